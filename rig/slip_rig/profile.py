@@ -2,17 +2,14 @@
 """Profile of a slip rig: discs, limits, drives, load cell or board."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal, TypeAlias
 
-import tomlkit
-
 from model.toml_table import TomlTable
 from rig.device import Limits
 from rig.errors import ProfileError
-from rig.profile import SCHEMA, open_profile, require_device
+from rig.profile import open_profile, require_device
 
 BoardLink: TypeAlias = Literal["serial", "table"]
 AXES: Final = ("x", "y", "z")
@@ -160,29 +157,6 @@ class RigProfile:
             "temperature_celsius": self.drives is not None,
         }
         return frozenset(key for key, known in measures.items() if known)
-
-
-def render_table_profile(
-    *, radius_leg: float, radius_ground: float, rate: float, further: Sequence[str] = ()
-) -> str:
-    """Format as TOML the profile of a rig whose speeds and forces are imported from a table in SI.
-
-    Args:
-        radius_leg: Radius of the leg disc [m].
-        radius_ground: Radius of the ground disc [m].
-        rate: Sample rate [Hz].
-        further: What the table measured besides, of `FURTHER`, in the order of its samples.
-    """
-    document = {
-        "schema": SCHEMA,
-        "device": "slip-rig",
-        "discs": {"radius_leg": radius_leg, "radius_ground": radius_ground},
-        "board": {
-            "link": "table", "rate": rate, "counts_per_force": 1.0, "counts_per_speed": 1.0,
-            "normal_sign": 1, "traction_sign": 1, **({"further": list(further)} if further else {}),
-        },
-    }  # fmt: skip
-    return tomlkit.dumps(document)
 
 
 def device_profiles(profile: RigProfile) -> BoardProfile | tuple[DriveProfile, LoadCellProfile]:

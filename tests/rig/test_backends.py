@@ -13,8 +13,8 @@ from rig.imu.profile import render_table_profile
 from rig.links.byte_link import MemoryLink
 from rig.links.can import CanLink
 from rig.links.serial import SerialLink
-from rig.slip_rig.profile import render_table_profile as render_rig_profile
 from rig.zebro.profile import load_leg_profile
+from support.table_runs import table_profile
 
 OF_LAYOUT = {
     "packet": "zebro-100-serial", "can": "zebro-100-can", "dump": "vregs-dump",
@@ -54,7 +54,7 @@ def test_a_rig_is_a_board_or_drives_and_a_load_cell():
 def test_a_profile_of_a_table_opens_nothing(tmp_path):
     imu, rig = tmp_path / "imu.toml", tmp_path / "rig.toml"
     imu.write_text(render_table_profile(100.0))
-    rig.write_text(render_rig_profile(radius_leg=0.035, radius_ground=0.12, rate=100.0))
+    rig.write_text(table_profile())
     for opener, file in ((open_imu, imu), (open_rig, rig)):
         with pytest.raises(ProfileError, match="describes a file, not a device"):
             opener(f"{file}@/dev/null")

@@ -45,5 +45,5 @@ def everything(files, tmp_path, track="track.csv"):
         tmp_path, legs=files / "legs.csv", imu=files / "imu.csv", track=files / track,
         robot=files / "robot.toml", label="circle", start=datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC),
     )  # fmt: skip
-    (folder,) = imported.folders
+    folder = imported.folder
     return folder, imported.notes

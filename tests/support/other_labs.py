@@ -43,13 +43,18 @@ yaw_rad = { name = "heading", unit = "deg" }
 )
 
 
-def write_rig_table(folder: Path) -> Path:
-    """Write a table of 24 simulated rig runs in German, with decimal commas."""
+def rig_sweep() -> dict[str, np.ndarray]:
+    """Return the samples of 24 simulated rig runs, in SI."""
     plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.9, 12) ** 1.5), loads=(4.0, 12.0), rate=60.0)
-    drawn = simulate_sweep(
+    return simulate_sweep(
         THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=TYPICAL_RIG,
         rng=np.random.default_rng(1),
     ).table  # fmt: skip
+
+
+def write_rig_table(folder: Path) -> Path:
+    """Write a table of 24 simulated rig runs in German, with decimal commas."""
+    drawn = rig_sweep()
     rpm = 60 / (2 * np.pi)
     table = pd.DataFrame({
         "Zeit": 1e3 * drawn["t"], "Versuch": drawn["run"], "n1": rpm * drawn["omega_leg"],

@@ -5,6 +5,7 @@ import json
 import math
 import time
 import tomllib
+from datetime import datetime
 from pathlib import Path
 
 import pandas as pd
@@ -12,7 +13,8 @@ import pytest
 
 from support.bundled_walk import WALK
 from support.commands import started
-from support.other_labs import RIG_COLUMNS, write_rig_table, write_walk_tables
+from support.other_labs import rig_sweep, write_walk_tables
+from support.table_runs import sweep_runs
 
 FEW_STEPS = ("--law", "coulomb-stribeck", "--max-steps", 100)
 
@@ -32,14 +34,11 @@ def cut_short(data: Path, label: str, *devices: object) -> Path:
 def data(command, tmp_path, monkeypatch) -> Path:
     """Return a folder of 24 runs of the rig, of which one is excluded, and of two walks."""
     monkeypatch.chdir(tmp_path)
-    bench, capture = Path("bench"), Path("capture")
-    for folder in (bench, capture):
-        folder.mkdir()
-    write_rig_table(bench)
-    (bench / "columns.toml").write_text(RIG_COLUMNS)
+    capture = Path("capture")
+    capture.mkdir()
     write_walk_tables(capture)
     start = "2026-03-04T05:06:07+00:00"
-    command("import", "--rig", bench / "bench.csv", "--data", "data", "--start", start)
+    sweep_runs(Path("data"), pd.DataFrame(rig_sweep()), start=datetime.fromisoformat(start))
     track = pd.read_csv(capture / "capture.csv")
     for label, first in (("one", 0), ("two", 1)):
         track.iloc[first::2].assign(**known_to(0.002)).to_csv(capture / "capture.csv", index=False)
@@ -69,9 +68,9 @@ def test_a_mixed_folder_goes_the_whole_way(command, data):
     assert f"{cut.name}: log.mcap is incomplete" in plain(said)
     assert cut_walk.is_dir()
     assert "legs and floor fitted to 2 walks" in plain(said)
-    assert plain(said).count("1 ×/÷ 1.20") == 2  # priors of lateral grip and lateral stiffness
+    assert plain(said).count("1 ×/÷ 1.30") == 2  # priors of lateral grip and lateral stiffness
     fitted = tomllib.loads(Path("calibration/walks/walks.toml").read_text())
-    assert fitted["prior"]["lateral_sd"] == pytest.approx(math.log(1.2))
+    assert fitted["prior"]["lateral_sd"] == pytest.approx(math.log(1.3))
     assert {"lateral_grip", "lateral_stiffness"} <= {each["name"] for each in fitted["parameter"]}
     for walked in (one, two):
         command("predict", walked, "--slip", "calibration", "--draws", 60)

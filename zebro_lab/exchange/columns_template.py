@@ -19,7 +19,7 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_columns import CANONICAL
 
 _READS: Final = {
-    RIG: "calibrate-slip and import --rig read", LEGS: "predict and import --legs read",
+    RIG: "calibrate-slip reads", LEGS: "predict and import --legs read",
     IMU: "import --imu reads", TRACK: "import --track reads",
 }  # fmt: skip
 _TOP: Final = """\

@@ -18,31 +18,27 @@ zebro-lab import --legs bag --track bag --imu bag --topic /odom --robot robot.to
 
 zebro-lab import --track KITTI_00.txt --times times.txt --plane xz --data data
 
-zebro-lab import --rig sweep.csv --material "POM on steel" --data data
-
 Other names and units of columns are mapped by a columns.toml in the folder of the files, or by
---columns FILE. For several files it has the sections [legs.columns], [imu.columns],
-[track.columns] and [rig.columns]; see docs/formats.md.
+--columns FILE. For several files it has the sections [legs.columns], [imu.columns]
+and [track.columns]; see docs/formats.md.
 """
 
 
 @request_command()
 def import_files(request: ImportRequest, output: Output = TEXT) -> None:
-    """Convert files from other software to run folders in DIR: run.json, log.mcap, track/."""
+    """Convert files from other software to a run folder in DIR: run.json, log.mcap, track/."""
     from zebro_lab.exchange.import_stage import import_run
 
     with output.progress() as watcher:
         imported = import_run(request, watcher)
     output.say(*imported.notes)
-    for folder, manifest in imported.manifests.items():
-        simulated = "SIMULATED " if is_simulated(manifest.source) else ""
-        counts = ", ".join(f"{count} {topic}" for topic, count in manifest.streams.items())
-        held = f"samples: {counts}" if counts else "a track alone"
-        output.say(f"{simulated}source {manifest.source}, {held}; wrote {folder}")
-    runs = [
-        {"folder": folder, "source": manifest.source, "samples": dict(manifest.streams)}
-        for folder, manifest in imported.manifests.items()
-    ]
-    simulated = any(is_simulated(manifest.source) for manifest in imported.manifests.values())
-    content = {"simulated": simulated, "runs": runs, "notes": list(imported.notes)}
+    manifest, simulated = imported.manifest, is_simulated(imported.manifest.source)
+    counts = ", ".join(f"{count} {topic}" for topic, count in manifest.streams.items())
+    held = f"samples: {counts}" if counts else "a track alone"
+    said = f"source {manifest.source}, {held}; wrote {imported.folder}"
+    output.say(f"SIMULATED {said}" if simulated else said)
+    run = {
+        "folder": imported.folder, "source": manifest.source, "samples": dict(manifest.streams),
+    }  # fmt: skip
+    content = {"simulated": simulated, "runs": [run], "notes": list(imported.notes)}
     output.document("import", content)

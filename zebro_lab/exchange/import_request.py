@@ -13,7 +13,6 @@ from zebro_lab.files.units import option_to_si
 from zebro_lab.terminal.leg_options import JOINTS, TOPIC, joint_names
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 
-_LABEL = "Name of the run, first part of it if a rig table has several; default: name of the file."
 _START = (
     "Date, time and time zone at which the files' time is 0, such as 2026-03-04T05:06:07+00:00; "
     "default: 1970 for times of 1e9 s and more, else now."
@@ -54,7 +53,6 @@ class ImportRequest:
     imu: Annotated[
         Path | None, Option(metavar="FILE", help="Orientation of the body: a table or a ROS log.")
     ] = None
-    rig: Annotated[Path | None, Option(metavar="FILE", help="Table of a slip rig.")] = None
     robot: Annotated[Path | None, Option(metavar="FILE", help="robot.toml to copy to the run.")] = (
         None
     )
@@ -63,7 +61,7 @@ class ImportRequest:
     ] = None
     joints: Annotated[str | None, Option(metavar="A,B,C,D,E,F", help=JOINTS)] = None
     topic: Annotated[tuple[str, ...], Option(metavar="NAME", help=TOPIC)] = ()
-    label: Annotated[str | None, Option(help=_LABEL)] = None
+    label: Annotated[str | None, Option(help="Name of the run; default: name of the file.")] = None
     start: Annotated[datetime | None, Option(metavar="TIME", parser=_moment, help=_START)] = None
     track_offset: Annotated[
         float,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Stage of `zebro-lab import`: convert files from other software to run folders."""
+"""Stage of `zebro-lab import`: convert files from other software to a run folder."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -13,7 +13,6 @@ from model.arrays import Array
 from model.format_distinct import format_distinct
 from model.tasks import Watcher
 from zebro_lab.exchange.import_request import FIRST, LAST, ImportRequest
-from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, read_imu_messages, write_imported_walk
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.names import is_ros_log
@@ -23,10 +22,9 @@ from zebro_lab.robot.imu_log import IMU_UNITS, ImuLog, imu_of_table
 from zebro_lab.robot.leg_log import LEG_UNITS, LegLog
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
-from zebro_lab.runs.folder import require_new, run_path
 from zebro_lab.runs.legs import LegNames, legs_of_file, require_used
 from zebro_lab.runs.manifest import IMPORTED, RunManifest, read_manifest
-from zebro_lab.tables.columns import COLUMNS_FILE, IMU, KINDS, LEGS, TRACK
+from zebro_lab.tables.columns import COLUMNS_FILE, IMU, LEGS, TRACK
 from zebro_lab.tables.columns_file import read_mapped_columns
 from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.table_files import read_table_file, table_stem
@@ -44,55 +42,47 @@ class Imported:
     """Result of an import.
 
     Attributes:
-        manifests: Manifest of each run folder that was written, the walk first.
+        folder: The run folder that was written.
+        manifest: Its manifest.
         notes: Notes on start time, damage and left-out rows, one line each.
     """
 
-    manifests: Mapping[Path, RunManifest]
+    folder: Path
+    manifest: RunManifest
     notes: tuple[str, ...]
-
-    @property
-    def folders(self) -> tuple[Path, ...]:
-        """The run folders that were written."""
-        return tuple(self.manifests)
 
 
 def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
-    """Convert files recorded by other software to run folders.
+    """Convert files of a walk recorded by other software to a run folder.
 
-    A walk becomes one run folder; rig data become one run folder per run. All files are read and
-    checked before the first folder is written.
+    All files are read and checked before the folder is written.
 
     Args:
         request: Files to import and settings.
         watcher: Progress display.
 
     Returns:
-        The run folders written, and notes.
+        The run folder written, and notes.
 
     Raises:
         SettingsError: An option, a `columns.toml` or the robot's file is invalid, or neither leg
-            angles nor a track nor a rig's table are given.
+            angles nor a track are given.
         NotFound: A file is missing.
-        DataError: A file has invalid content, with file, column and row where there are such; IMU
-            or track share no time with the legs; or two runs have the same name and start.
-        AlreadyExists: The folder of one of the runs exists.
-        OSError: A folder cannot be written.
+        DataError: A file has invalid content, with file, column and row where there are such; or
+            IMU or track share no time with the legs.
+        AlreadyExists: The folder of the run exists.
+        OSError: The folder cannot be written.
     """
     _require_something(request)
     watcher.step("reading", None)
-    with_walk = request.legs is not None or request.track is not None
-    walk, walk_notes = _walk(request) if with_walk else (None, ())
-    rig, rig_notes = _rig(request) if request.rig is not None else ((), ())
-    _require_new(request.data, walk, rig)
-    folders = [] if walk is None else [write_imported_walk(request.data, walk)]
-    for i, run in enumerate(rig):
-        watcher.step("writing", i / len(rig))
-        folders.append(write_rig_run(request.data, run))
-    files = [(kind, file) for kind in KINDS if (file := getattr(request, kind)) is not None]
-    above = [line for each in files for line in columns_above(*each, request.columns)]
-    manifests = {folder: read_manifest(folder) for folder in folders}
-    return Imported(manifests, (*walk_notes, *rig_notes, *above))
+    walk, notes = _walk(request)
+    folder = write_imported_walk(request.data, walk)
+    files = ((LEGS, request.legs), (IMU, request.imu), (TRACK, request.track))
+    above = [
+        line for kind, file in files if file is not None
+        for line in columns_above(kind, file, request.columns)
+    ]  # fmt: skip
+    return Imported(folder, read_manifest(folder), (*notes, *above))
 
 
 def _require_something(request: ImportRequest) -> None:
@@ -101,7 +91,7 @@ def _require_something(request: ImportRequest) -> None:
     wrong = (
         (request.imu is not None and not legs, "--imu", walk),
         (request.robot is not None and not legs, "--robot", walk),
-        (not legs and not track and request.rig is None, "--legs, --track, --rig",
+        (not legs and not track, "--legs, --track",
          "no file to import is given; add one of these"),
         (request.trajectory != TrajectoryRequest() and not track, "--track",
          "--plane, --forward, --times and --layout say how a track is read; add its file"),
@@ -194,21 +184,13 @@ def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
 
 
 def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None]:
-    alone = request.legs is None and request.rig is None
+    alone = request.legs is None
     columns, topic = read_mapped_columns(TRACK, path, request.columns, MAPPED_UNITS, alone=alone)
     track = read_foreign_track(
         path, columns, request.trajectory, topic=topic, topics=request.topic,
         sd=None if request.pose_sd is None else PoseSd(*request.pose_sd),
     )  # fmt: skip
     return track, track.topic
-
-
-def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
-    path = request.rig or Path()
-    runs, notes = rig_runs(path, request)
-    last = max(float(run.table.t[-1]) for run in runs)
-    start, zero, note = _start(request.start, float(runs[0].table.t[0]), last, path)
-    return [run.begun(start, zero) for run in runs], (*note, *notes)
 
 
 def _start(
@@ -277,15 +259,3 @@ def _require_shared_time(
             "both files to one clock",
             file=file,
         )
-
-
-def _require_new(data: Path, walk: ImportedWalk | None, rig: Sequence[RigRun]) -> None:
-    manifests = [each.manifest for each in (*([walk] if walk else []), *rig)]
-    paths = [run_path(data, each.kind, each.label, each.began) for each in manifests]
-    for path in paths:
-        require_new(path)
-    if len(set(paths)) < len(paths):
-        twice = next(path for path in paths if paths.count(path) > 1)
-        names = [f"'{m.label}'" for m, path in zip(manifests, paths, strict=True) if path == twice]
-        found = f"runs {' and '.join(names)} start in the same second, and would all be {twice}"
-        raise DataError(f"{found}; change the letters or digits of a name in the table")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Write samples that are already decoded as a finished run folder.
 
-They are stored like raw samples, with profiles that decode them: of the rig and an IMU in SI with
-scale 1, of legs in degrees.
+They are stored like raw samples, with profiles that decode them: of an IMU in SI with scale 1, of
+legs in degrees.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -15,19 +15,15 @@ import numpy as np
 
 from model.arrays import Array
 from rig.sample_columns import SampleColumns
-from rig.slip_rig.profile import FURTHER, render_table_profile
 from zebro_lab.files.atomic import atomic_folder, atomic_write_text
-from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import WARNING, LogWriter
 from zebro_lab.mcap.raw_log import raw_topic
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, require_new, run_path
-from zebro_lab.runs.manifest import RIG, TABLE, RunManifest, profile_file, write_manifest
+from zebro_lab.runs.manifest import TABLE, RunManifest, profile_file, write_manifest
 from zebro_lab.runs.profile_streams import stored_streams
-from zebro_lab.runs.slip_rig_table import SlipRigTable
 
-_BOARD: Final = "board"
-_BLOCKS: Final = {"walk": 100, "slip-rig": 1000}  # samples per chunk; a truncated file loses one
+_BLOCK: Final = 100  # samples per chunk; a truncated file loses one
 
 
 def write_table_run(
@@ -92,11 +88,10 @@ def _write_log(
     event: str,
     warnings: Sequence[str],
 ) -> None:
-    size = _BLOCKS[manifest.kind]
     blocks = [
-        (name, columns[first : first + size])
+        (name, columns[first : first + _BLOCK])
         for name, columns in samples.items()
-        for first in range(0, len(columns), size)
+        for first in range(0, len(columns), _BLOCK)
     ]
     with (draft / LOG_FILE).open("wb") as file:
         log = LogWriter(
@@ -129,57 +124,4 @@ def table_samples(t: Array, values: Array) -> SampleColumns:
         status=np.zeros(n, dtype=np.uint32),
         channel=np.zeros(n, dtype=np.uint32),
         counts=values,
-    )
-
-
-def write_slip_rig_run(
-    data_dir: Path,
-    table: SlipRigTable,
-    manifest: RunManifest,
-    *,
-    extra: Callable[[Path], object] | None = None,
-) -> Path:
-    """Write a run of the slip rig as a new run folder, atomically.
-
-    Args:
-        data_dir: Folder of run folders; created when missing.
-        table: The samples, at least one.
-        manifest: Manifest of the run, with its start, and both radii among its constants.
-        extra: Called with the draft folder, to write more files before the folder gets its name.
-
-    Returns:
-        The run folder.
-
-    Raises:
-        DataError: The table is empty.
-        AlreadyExists: A run of this kind, start and label exists.
-        OSError: The folder cannot be written.
-    """
-    if len(table) == 0:
-        raise DataError(f"run '{manifest.label}' has no samples to write")
-    further = [name for name in table.measured() if name in FURTHER]
-    columns = ("normal_force", "traction_force", "omega_leg", "omega_ground", *further)
-    values = np.column_stack([getattr(table, name) for name in columns])
-    return write_table_run(
-        data_dir,
-        replace(manifest, sources={_BOARD: manifest.source}),
-        {_BOARD: table_samples(table.t, values)},
-        profiles={RIG: _profile(table.t, manifest.constants, further)},
-        extra=extra,
-    )
-
-
-def _profile(t: Array, constants: Mapping[str, float], further: Sequence[str]) -> str:
-    """Return the TOML of a rig profile with scale 1, the radii, and the rate of samples at `t`.
-
-    `further` names what was measured besides forces and speeds.
-
-    The rate is 1 over the median interval; 1 Hz for one sample, or where that is not positive.
-    """
-    step = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
-    return render_table_profile(
-        radius_leg=constants["radius_leg"],
-        radius_ground=constants["radius_ground"],
-        rate=1 / step if step > 0 else 1.0,
-        further=further,
     )

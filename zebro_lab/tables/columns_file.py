@@ -5,7 +5,6 @@ The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commen
 """
 
 import math
-import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -258,9 +257,3 @@ def _priors(table: SettingsTable) -> tuple[str, ...]:
     return tuple(
         f"{key} {'~' if '(' in text else '='} {text.lstrip('~= ')}" for key, text in texts.items()
     )
-
-
-def prior_entry(text: str) -> tuple[str, str]:
-    """Return a prior as key and text of `[priors]`, from one text of `RigColumns.priors`."""
-    name, value = re.split(r" [=~] ", text, maxsplit=1)
-    return name, value

@@ -36,6 +36,8 @@ REMOVED: Final[dict[str, str]] = {
     "compare --seed": "The draws of a comparison are the same each time; leave the option out.",
     "export --to mcap": "A track opens in other tools by track/path.tum; path.csv of a prediction "
     "and the tables of --to csv open anywhere.",
+    "import --rig": "calibrate-slip reads the table itself: put it in the folder with a "
+    "columns.toml; zebro-lab init FILE writes one.",
     "predict --anisotropy": "A band takes lateral grip and stiffness as 1 ×/÷ 1.3; calibrate-slip "
     "--walks fits them to tracked walks.",
     "predict --thesis": "Leg angles are walked by the listing of the thesis's model; gaits by its "

@@ -40,13 +40,3 @@ def test_a_run_of_real_legs_and_a_simulated_imu_is_called_simulated(files, tmp_p
     (folder,) = (tmp_path / "data").iterdir()
     shown = {panel.title.split(":")[0]: panel.simulated for panel in read_signals(folder).panels}
     assert shown == {"legs": False, "imu": True}
-
-
-def test_a_rigs_runs_are_all_named(sweep, tmp_path, run_command):
-    ended = run_command("import", "--rig", sweep / "sweep.csv", "--data", tmp_path,
-                        "--start", "2026-01-01T00:00:00+00:00")  # fmt: skip
-    assert ended.code == 0
-    named = [
-        line for line in ended.out.splitlines() if line.startswith("SIMULATED source sim:rig-sweep")
-    ]
-    assert len(named) == len(list(tmp_path.iterdir())) == 24

@@ -53,7 +53,7 @@ def test_a_track_is_what_validate_takes(files, tmp_path, track):
 def test_standard_deviations_that_are_stated_are_those_of_the_track(files, tmp_path):
     stated = {"track_sd": "2 mm", "track_sd_yaw": "0.2 deg"}
     imported = taken(tmp_path, legs=files / "legs.csv", track=files / "path.tum", **stated)
-    tracked = read_track(imported.folders[0] / "track")
+    tracked = read_track(imported.folder / "track")
     expected = np.diag([2e-3, 2e-3, np.radians(0.2)]) ** 2
     np.testing.assert_allclose(tracked.covariance, np.tile(expected, (len(tracked.poses), 1, 1)))
     assert not any("exact" in note or "--track-sd" in note for note in imported.notes)
@@ -65,7 +65,7 @@ def test_suspected_leg_angles_are_warned_of_and_kept_with_the_run(tmp_path):
     pd.DataFrame(table).to_csv(tmp_path / "legs.csv", index=False)
     imported = taken(tmp_path, legs=tmp_path / "legs.csv")
     (line,) = [note for note in imported.notes if "legs 2, 4 and 6 turn backwards" in note]
-    events, _ = read_messages(imported.folders[0] / "log.mcap", schema=LOG)
+    events, _ = read_messages(imported.folder / "log.mcap", schema=LOG)
     assert [(each.content.level, each.content.msg) for each in events][1:] == [(WARNING, line)]
     (tmp_path / "robot.toml").write_text("[legs]\nsign = [1, -1, 1, -1, 1, -1]")
     right = taken(tmp_path, legs=tmp_path / "legs.csv", robot=tmp_path / "robot.toml", label="x")
@@ -87,7 +87,7 @@ def test_times_since_1970_tell_when_a_run_began(files, tmp_path):
     table = pd.read_csv(files / "legs.csv")
     table["time_ms"] += 1_772_600_767_000.0
     table.to_csv(files / "legs.csv", index=False)
-    folder = taken(tmp_path, legs=files / "legs.csv").folders[0]
+    folder = taken(tmp_path, legs=files / "legs.csv").folder
     assert read_manifest(folder).start == "2026-03-04T05:06:07+00:00"
     assert read_leg_log(folder).reference.t[0] == pytest.approx(0.0, abs=1e-6)
     with pytest.raises(SettingsError, match=r"^--start: .* since 1970 .* 2026-03-04.*leave out"):
@@ -158,7 +158,7 @@ def test_what_cannot_be_taken_is_named_and_leaves_nothing(files, tmp_path, spoil
 
 def test_stages_that_need_leg_angles_say_that_a_track_alone_has_none(tmp_path):
     file = written(tmp_path / "a.tum", tum(*drive()))
-    (folder,) = taken(tmp_path, track=file).folders
+    folder = taken(tmp_path, track=file).folder
     with pytest.raises(DataError, match=r"^\S+: holds a track without leg angles; import"):
         read_leg_log(folder)
     with pytest.raises(DataError, match=r"without leg angles.*validate REFERENCE .*track\.csv$"):
@@ -219,7 +219,7 @@ def bag(tmp_path_factory):
 
 def test_legs_imu_and_track_come_from_one_bag(bag, tmp_path):
     imported = taken(tmp_path, legs=bag, imu=bag, track=bag, topic=("/odom",))
-    (folder,) = imported.folders
+    folder = imported.folder
     manifest = read_manifest(folder)
     assert manifest.source == "import:walk"
     assert manifest.start == "2023-11-14T22:13:20+00:00"
@@ -250,6 +250,6 @@ def test_degrees_in_a_bag_are_told_by_columns_toml_and_suspected_without(tmp_pat
     assert any("are the angles in degrees?" in note for note in suspected)
     units = "".join(f'theta{leg} = {{unit = "deg"}}\n' for leg in range(1, 7))
     (tmp_path / "columns.toml").write_text(f"[legs.columns]\n{units}")
-    (folder,) = taken(tmp_path, legs=bag, label="b").folders
+    folder = taken(tmp_path, legs=bag, label="b").folder
     log = read_leg_log(folder).reference
     np.testing.assert_allclose(log.theta - log.theta[0], (WALKED - WALKED[0]) / 8, atol=1e-9)

@@ -30,7 +30,7 @@ def test_a_trajectory_alone_makes_a_run_with_a_track(tmp_path, name, text, how):
     file = written(tmp_path / name, text(t, position, rotation))
     written(tmp_path / "times.txt", "".join(f"{stamp:.17g}\n" for stamp in t))
     how = {key: tmp_path / v if key == "times" else v for key, v in how.items()}
-    (folder,) = taken(tmp_path, track=file, trajectory=TrajectoryRequest(**how)).folders
+    folder = taken(tmp_path, track=file, trajectory=TrajectoryRequest(**how)).folder
     poses = read_track(folder / "track").poses
     np.testing.assert_allclose(poses.t, t, atol=1e-9)
     np.testing.assert_allclose(poses.position, position[:, :2], atol=1e-9)
@@ -61,9 +61,9 @@ def motion_capture(folder):
 
 @pytest.mark.parametrize("how", [{}, {"plane": Plane.XY}])
 def test_mapped_quaternions_of_a_table_are_the_heading(tmp_path, how):
-    (folder,) = taken(
+    folder = taken(
         tmp_path, track=motion_capture(tmp_path), trajectory=TrajectoryRequest(**how)
-    ).folders
+    ).folder
     poses = read_track(folder / "track").poses
     _, position, rotation = drive()
     np.testing.assert_allclose(poses.position, position[:, :2], atol=1e-9)
@@ -77,14 +77,14 @@ def test_a_track_of_another_clock_is_brought_to_that_of_the_legs(files, tmp_path
     both = {"legs": files / "legs.csv", "track": files / "track.csv"}
     with pytest.raises(DataError, match=r"shared; add --track-offset 1000\.25 where both"):
         taken(tmp_path, **both)
-    (folder,) = taken(tmp_path, **both, track_offset=1000.25).folders
+    folder = taken(tmp_path, **both, track_offset=1000.25).folder
     np.testing.assert_allclose(read_track(folder / "track").poses.t, T[::20], atol=1e-9)
 
 
 def test_times_since_1970_of_a_track_tell_when_it_began(tmp_path):
     t, position, rotation = drive()
     file = written(tmp_path / "a.csv", euroc(t + 1_772_600_767, position, rotation))
-    (folder,) = taken(tmp_path, track=file).folders
+    folder = taken(tmp_path, track=file).folder
     assert read_manifest(folder).start == "2026-03-04T05:06:07+00:00"
     np.testing.assert_allclose(read_track(folder / "track").poses.t, t, atol=1e-6)
 

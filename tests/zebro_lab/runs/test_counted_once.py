@@ -9,10 +9,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from support.watchers import Nobody
+from support.table_runs import sweep_runs
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
-from zebro_lab.exchange.import_request import ImportRequest
-from zebro_lab.exchange.import_stage import import_run
 from zebro_lab.runs.counted_once import content_hash
 from zebro_lab.runs.exclusion import exclude_run
 
@@ -26,9 +24,9 @@ def data(sweep, tmp_path) -> Path:
     return tmp_path / "data"
 
 
-def imported(data: Path, folder: Path, **change) -> list[Path]:
-    request = {"data": folder, "rig": data / "sweep.csv", "start": START} | change
-    return list(import_run(ImportRequest(**request), Nobody()).folders)
+def runs_of(folder: Path, data: Path, **settings) -> list[Path]:
+    table = pd.read_csv(folder / "sweep.csv")
+    return sweep_runs(data, table, **settings)
 
 
 def assert_once(found: RigData, sweep: Path, *names: str) -> None:
@@ -70,26 +68,23 @@ def test_of_two_equal_tables_the_one_named_like_a_copy_is_the_copy(data, name):
     assert f"{name} equals sweep" in found.repeated[0]
 
 
-LATER = START.replace(year=2027)
-
-
-@pytest.mark.parametrize("again", [{}, {"start": LATER}, None])
-def test_what_is_imported_or_copied_again_counts_once(data, sweep, tmp_path, again):
-    folder = imported(data, tmp_path / "runs", label="first")[0]
+@pytest.mark.parametrize("again", [START, START.replace(year=2027), None])
+def test_runs_written_or_copied_again_count_once(sweep, tmp_path, again):
+    folder = runs_of(sweep, tmp_path / "runs", start=START, label="first")[0]
     if again is None:
         shutil.copytree(folder, tmp_path / "runs" / "again")
     else:
-        imported(data, tmp_path / "runs", label="again", **again)
+        runs_of(sweep, tmp_path / "runs", start=again, label="again")
     assert_once(read_rig_data([tmp_path / "runs"]), sweep, "again")
 
 
-def test_a_table_beside_the_runs_imported_from_it_counts_once(data, sweep):
-    imported(data, data / "runs")
+def test_a_table_beside_runs_with_its_samples_counts_once(data, sweep):
+    runs_of(data, data / "runs", start=START)
     assert_once(read_rig_data([data]), sweep, "sweep")
 
 
 def test_what_is_excluded_does_not_come_back_under_another_name(data, sweep):
-    folder = imported(data, data / "runs")[3]
+    folder = runs_of(data, data / "runs", start=START)[3]
     exclude_run(folder, why="belt slipped")
     found = read_rig_data([data])
     alone = read_rig_data([sweep])

@@ -50,12 +50,6 @@ def test_run_is_never_overwritten(tmp_path):
         make_run(tmp_path)
 
 
-def test_empty_run_is_refused(tmp_path):
-    with pytest.raises(DataError, match="has no samples"):
-        make_run(tmp_path, 0)
-    assert list(tmp_path.iterdir()) == []
-
-
 def flipped(data):
     middle = len(data) // 2
     return data[:middle] + bytes([data[middle] ^ 0xFF]) + data[middle + 1 :]

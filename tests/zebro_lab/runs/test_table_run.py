@@ -6,12 +6,9 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from rig.slip_rig.profile import load_rig_profile
 from support.table_runs import slip_rig_run
-from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.folder import read_slip_rig_run
-from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.slip_rig_table import SlipRigTable
 
 
@@ -30,19 +27,3 @@ def test_every_bit_comes_back(tmp_path, n):
     np.testing.assert_array_equal(read_slip_rig_run(folder).table.rows(), table.rows())
     stream = read_raw_log(folder / "log.mcap").streams["/board/raw"]
     np.testing.assert_array_equal(stream.counts[:, 0], table.normal_force)
-
-
-def test_the_profile_says_that_it_is_a_tables_and_how_fast(tmp_path):
-    t = np.arange(10) * 0.02
-    folder = write(tmp_path, SlipRigTable(t, t, t, t, t))
-    profile = load_rig_profile(str(folder / "profiles" / "rig.toml"))
-    assert (profile.board.link, profile.radius_leg, profile.radius_ground) == ("table", 0.03, 0.1)
-    assert profile.board.rate == pytest.approx(50.0)
-    manifest = read_manifest(folder)
-    assert (manifest.profiles, manifest.sources) == ({"rig": "table"}, {"board": "real"})
-
-
-def test_no_samples_are_no_run(tmp_path):
-    with pytest.raises(DataError, match="has no samples to write"):
-        write(tmp_path, SlipRigTable(*np.empty((5, 0))))
-    assert list(tmp_path.iterdir()) == []

@@ -83,7 +83,7 @@ def imported_walk(folder):
     asked = ImportRequest(
         folder, legs=WALK / "legs.csv", imu=WALK / "imu.csv", robot=WALK / "robot.toml"
     )
-    run = import_run(asked, Nobody()).folders[0]
+    run = import_run(asked, Nobody()).folder
     truth = pd.read_csv(WALK / "truth.csv")
     poses = truth[["t", "x", "y", "yaw"]].iloc[:: len(truth) // 6]
     table = poses.set_axis(["t_s", "x_m", "y_m", "yaw_rad"], axis=1)

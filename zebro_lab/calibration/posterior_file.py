@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Read `posterior.nc` beside a `slip.toml`: draws of the law, and the blocks that were fitted."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -96,44 +95,28 @@ def _posterior(file: Path, curve: SlipCurve) -> Array:
     return np.column_stack([columns.get(name, np.full(m, fixed[name])) for name in names])
 
 
-@dataclass(frozen=True)
-class FittedBlocks:
-    """Block means of a calibration, in its slip definition.
-
-    Attributes:
-        slip: Slip ratio of each block, shape (n,) [-].
-        normal_force: Normal force, shape (n,) [N].
-        traction_force: Traction force, shape (n,) [N].
-        definition: Slip definition.
-    """
-
-    slip: Array
-    normal_force: Array
-    traction_force: Array
-    definition: str
-
-
-def read_fitted_blocks(slip_toml: Path, definition: str) -> FittedBlocks | None:
-    """Read the block means beside a `slip.toml`; None without a `posterior.nc` that has them.
+def read_block_means(slip_toml: Path) -> Array:
+    """Read the block means that a calibration was fitted to, in its slip definition.
 
     Args:
         slip_toml: The calibration's `slip.toml`.
-        definition: Its slip definition.
+
+    Returns:
+        Slip ratio [-], normal force and traction force [N], shape (3, n); n is 0 without a
+        `posterior.nc` that has them.
 
     Raises:
         DataError: `posterior.nc` is damaged.
     """
     file = slip_toml.parent / POSTERIOR
     if not file.is_file():
-        return None
-    forces, _ = read_draws_of(file, "observed_data", ["traction_force"], advice=_ANEW)
+        return np.empty((3, 0))
     given, _ = read_draws_of(file, "constant_data", ["slip_ratio", "normal_force"], advice=_ANEW)
-    found = {**forces, **given}
-    if len(found) < 3 or len({len(values) for values in found.values()}) > 1:
-        return None
-    return FittedBlocks(
-        found["slip_ratio"], found["normal_force"], found["traction_force"], definition
-    )
+    forces, _ = read_draws_of(file, "observed_data", ["traction_force"], advice=_ANEW)
+    found = list({**given, **forces}.values())
+    if len(found) < 3 or len({len(values) for values in found}) > 1:
+        return np.empty((3, 0))
+    return np.stack(found)
 
 
 def read_slip_blocks(slip_toml: Path, definition: SlipDefinition) -> SlipBlocks:

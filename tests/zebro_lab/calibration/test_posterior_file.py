@@ -16,7 +16,7 @@ from support.short_calibration import short_calibration
 from zebro_lab.calibration.folder import POSTERIOR, write_tables
 from zebro_lab.calibration.posterior_file import (
     law_draws,
-    read_fitted_blocks,
+    read_block_means,
     read_slip_blocks,
     slip_tables,
 )
@@ -79,16 +79,13 @@ def test_every_draw_of_the_law_has_a_table_of_its_own(tmp_path):
 def test_block_means_come_back_as_they_were_fitted(tmp_path):
     calibration = short_calibration()
     write_tables(tmp_path, calibration, inputs={})
-    found, blocks = (
-        read_fitted_blocks(tmp_path / "slip.toml", "material"), calibration.posterior.blocks
-    )  # fmt: skip
-    np.testing.assert_allclose(found.slip, blocks.slip)
-    np.testing.assert_allclose(found.normal_force, blocks.normal_force)
-    np.testing.assert_allclose(found.traction_force, blocks.traction_force)
+    blocks = calibration.posterior.blocks
+    expected = [blocks.slip, blocks.normal_force, blocks.traction_force]
+    np.testing.assert_allclose(read_block_means(tmp_path / "slip.toml"), expected)
 
 
 def test_without_posterior_there_are_none(tmp_path):
-    assert read_fitted_blocks(tmp_path / "slip.toml", "material") is None
+    assert read_block_means(tmp_path / "slip.toml").shape == (3, 0)
 
 
 def test_blocks_come_back_with_all_that_the_likelihood_takes(tmp_path):

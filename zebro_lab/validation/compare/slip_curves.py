@@ -13,7 +13,7 @@ from model.slip.curve_band import farthest, simultaneous_band
 from model.slip.definition import SlipDefinition
 from zebro_lab.calibration.curve_argument import GivenCurve, is_curve, parse_curve
 from zebro_lab.calibration.folder import read_slip_file
-from zebro_lab.calibration.posterior_file import law_draws, read_fitted_blocks
+from zebro_lab.calibration.posterior_file import law_draws, read_block_means
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.validation.compare.values import Comparison, Curve, Place, Quantity
@@ -50,11 +50,9 @@ class _Fitted:
 
     def points(self, load: float) -> Array:
         """Read slip ratios and forces of the block means near a load, shape (2, k)."""
-        blocks = read_fitted_blocks(self.files[0], str(self.curve.definition))
-        if blocks is None:
-            return np.empty((2, 0))
-        near = np.abs(blocks.normal_force - load) <= _NEAR * load
-        return np.stack([blocks.slip[near], blocks.traction_force[near]])
+        slip, loads, force = read_block_means(self.files[0])
+        near = np.abs(loads - load) <= _NEAR * load
+        return np.stack([slip[near], force[near]])
 
 
 class _Given:

@@ -62,7 +62,6 @@ TAPE_SD, TURN_SD, SIDE_SD = 2e-4, 2e-3, 1e-4  # m, rad, m
 HEIGHT, HEIGHT_SD, TILT_SD = 0.0645, 3e-4, 2e-3  # m, m, rad
 GOOD = Conditions(defocus_sd_px=0.6)
 PLATE = TopPlate(0.176, 0.176, 0.0385, margin=0.006, front_margin=0.006)
-POSES = 300  # of each kind
 MARKER_REACH_PX, BODY_REACH_PX = 96, 112
 
 
@@ -78,12 +77,13 @@ class Kind:
     height_sd: float = HEIGHT_SD
     tilt_sd: float = TILT_SD
     marked: bool = True
+    poses: int = 300
 
 
 KINDS = (
     Kind("marker, steady", 0.5, 0.2, 1.0),
     Kind("marker, 5 mm bounce, 2 degrees tilt", 4.0, 0.3, 0.99, height_sd=5e-3,
-         tilt_sd=np.radians(2)),
+         tilt_sd=np.radians(2), poses=1000),  # a few of them err by far the most
     Kind("marker, harsh", 1.0, 0.3, 0.9, conditions=HARSH),
     Kind("no marker, 2 degrees tilt", 2.0, 2.0, 0.99, tilt_sd=np.radians(2), marked=False),
 )  # fmt: skip
@@ -341,7 +341,7 @@ HEAD = (
 def line(kind: Kind, row: Row) -> str:
     inside = " | ".join(f"{share:.3f}" for share in row.inside)
     return (
-        f"| {kind.name} | {POSES} | {row.recall:.1%} | {row.xy_mm:.2f} mm "
+        f"| {kind.name} | {kind.poses} | {row.recall:.1%} | {row.xy_mm:.2f} mm "
         f"| {row.yaw_deg:.3f}° | {inside} |"
     )
 
@@ -350,7 +350,7 @@ def line(kind: Kind, row: Row) -> str:
 def measured(request) -> tuple[Kind, Row]:
     """Photograph and track every pose of a kind."""
     kind = request.param
-    tasks = [(KINDS.index(kind), n) for n in range(POSES)]
+    tasks = [(KINDS.index(kind), n) for n in range(kind.poses)]
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         row = Row.of(list(pool.map(one_pose, tasks, chunksize=10)))
     head = HEAD if kind is KINDS[0] else ""
@@ -359,8 +359,8 @@ def measured(request) -> tuple[Kind, Row]:
 
 
 def test_nominal_90_percent_intervals_hold_the_truth_at_their_rate(measured):
-    _, row = measured
-    spread = 2.8 * np.sqrt(0.09 / POSES)  # leaves 0.9 by chance in one of 200 shares
+    kind, row = measured
+    spread = 2.8 * np.sqrt(0.09 / kind.poses)  # leaves 0.9 by chance in one of 200 shares
     assert (np.abs(row.inside - 0.9) <= spread).all()
     assert abs(row.inside.mean() - 0.9) <= 0.03
 

@@ -150,24 +150,6 @@ class RawTable:
             raise self._not_a_number(name, int(np.argmax(bad)))
         return values
 
-    def finite(
-        self, name: str, expected: str = "a finite number", *, may_be_empty: bool = False
-    ) -> Array:
-        """Return a column as finite numbers in the file's unit, shape (n,).
-
-        Args:
-            name: Header of the column.
-            expected: What a cell should hold, and what to do if it does not; for the message.
-            may_be_empty: Whether empty cells are allowed; they become NaN.
-
-        Raises:
-            DataError: The column is missing, ambiguous or of dates, or a cell is infinite, not a
-                number, or empty unless that is allowed.
-        """
-        values = self.numbers(name)
-        self.require_finite(name, values, expected, may_be_empty=may_be_empty)
-        return values
-
     def require_finite(
         self,
         name: str,
@@ -175,6 +157,7 @@ class RawTable:
         expected: str = "a finite number",
         *,
         may_be_empty: bool = False,
+        rows: NDArray[np.intp] | None = None,
     ) -> None:
         """Check that the numbers of a column are finite, and none stands for an overload.
 
@@ -183,6 +166,7 @@ class RawTable:
             values: Its numbers by row, shape (n,); NaN where the cell is empty.
             expected: What a cell should hold, and what to do if it does not; for the message.
             may_be_empty: Whether empty cells are allowed.
+            rows: Row of each number, counted from 0, shape (n,); None if they are of all rows.
 
         Raises:
             DataError: A number is infinite or an overload, or a cell is empty unless that is
@@ -190,8 +174,10 @@ class RawTable:
         """
         bad = ~is_measured(values) & ~(may_be_empty & np.isnan(values))
         if bad.any():
-            index = int(np.argmax(bad))
-            raise self.fault(f"is {missing_text(values[index])}; expected {expected}", name, index)
+            first = int(np.argmax(bad))
+            many = f"; it is the first of {bad.sum()} such cells" if bad.sum() > 1 else ""
+            problem = f"is {_missing_text(values[first])}; expected {expected}{many}"
+            raise self.fault(problem, name, first if rows is None else int(rows[first]))
 
     def require_increasing(self, column: str, t: Array) -> None:
         """Check that times are strictly increasing.
@@ -276,7 +262,7 @@ def is_measured(values: Array) -> NDArray[np.bool_]:
     return np.isfinite(values) & (np.abs(values) < OVERLOAD)
 
 
-def missing_text(value: float) -> str:
+def _missing_text(value: float) -> str:
     """Return what a number is that is not measured: "empty", "infinite" or that of an overload."""
     if np.isnan(value):
         return "empty"

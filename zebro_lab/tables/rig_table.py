@@ -11,7 +11,7 @@ from model.arrays import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.date_cells import is_date_unit
-from zebro_lab.tables.raw_table import OVERLOAD, RawTable, is_measured, missing_text
+from zebro_lab.tables.raw_table import OVERLOAD, RawTable
 from zebro_lab.tables.rig_columns import CANONICAL, RigColumns
 
 
@@ -70,20 +70,12 @@ class RigTable:
         """
         source = self.required(name)
         values = source.in_si(self.raw)[self.rows]
-        lost = ~is_measured(values)
-        if lost.any():
-            first = int(np.argmax(lost))
-            negative = np.any(values[lost] * source.factor < 0)  # in the file
-            bound = f"> -{OVERLOAD:g}" if negative else f"< {OVERLOAD:g}"
-            raise self.raw.fault(
-                f"is {missing_text(values[first])}; expected finite numbers, which {lost.sum()} of "
-                f"{len(lost)} rows do not have, this row first. Delete these rows, or skip them "
-                f'with [rows] keep = ["`{source.name}` {bound}"] in {self.columns.stated_in}',
-                source.name,
-                int(self.rows[first]),
-                value=float(values[first]),
-                unit=CANONICAL[name].unit,
-            )
+        keep = f'"`{source.name}` > -{OVERLOAD:g}", "`{source.name}` < {OVERLOAD:g}"'
+        expected = (
+            f"finite numbers: delete such rows, or skip them with [rows] keep = [{keep}] in "
+            f"{self.columns.stated_in}"
+        )
+        self.raw.require_finite(source.name, values, expected, rows=self.rows)
         return values
 
     def texts(self, name: str) -> NDArray[np.object_]:

@@ -194,12 +194,13 @@ def read_walk(path: Path) -> WalkPath:
 
 def _read(table: RawTable, attribute: str) -> Array:
     """Read the columns of an attribute, shape (n, k), or (n,) of a single one; NaN without them."""
-    columns = [
-        np.full(len(table), np.nan)
-        if attribute in _LATER and name not in table.columns
-        else table.finite(name, may_be_empty=attribute in _COMPUTED)
-        for name in _COLUMNS_OF[attribute]
-    ]
+    columns = []
+    for name in _COLUMNS_OF[attribute]:
+        if attribute in _LATER and name not in table.columns:
+            columns.append(np.full(len(table), np.nan))
+            continue
+        columns.append(values := table.numbers(name))
+        table.require_finite(name, values, may_be_empty=attribute in _COMPUTED)
     return columns[0] if len(columns) == 1 else np.column_stack(columns)
 
 

@@ -40,21 +40,21 @@ def put(column: str, row: int, value: object) -> pd.DataFrame:
 CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     "missing column": (
         good().rename(columns={"normal_force": "Normal Force"}),
-        "column 'normal_force': is missing; did you mean 'Normal Force'?",
+        "column 'normal_force': the column of the normal force is missing; did you mean 'Normal",
     ),
     "missing slip": (
         good().drop(columns=["slip_ratio", "slip_definition"]),
-        "is missing; expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground'",
+        "slip ratio with its definition, or of omega_leg and omega_ground with the radii, is",
     ),
     "one speed": (
         with_speeds().drop(columns="omega_ground"),
-        "column 'omega_ground': is missing; known: 't'",
+        "column 'omega_ground': the column of the angular speed of the ground disc is missing",
     ),
     "nan": (
         put("traction_force", 7, None),
         "column 'traction_force', row 7 (line 8): is empty; expected finite numbers",
     ),
-    "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e+30"]'),
+    "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e+30", "'),
     "nan in time": (put("t", 4, None), "column 't', row 4 (line 5)"),
     "text": (
         put("normal_force", 5, "n/m"),

@@ -36,7 +36,7 @@ def test_titles_units_and_texts_of_numbers_are_read(tmp_path):
     assert table.numbers("Kraft").tolist()[0] == 1.5
     assert table.notes[0] == "a.xlsx: sheet 'Daten'"
     with pytest.raises(DataError, match=r"'Kraft', row 2 \(line 6\): is empty"):
-        table.finite("Kraft")
+        table.require_finite("Kraft", table.numbers("Kraft"))
     assert table.columns["wann"].iloc[1] == datetime(2026, 3, 5)
 
 

@@ -126,8 +126,8 @@ def test_a_line_of_words_between_numbers_is_told_from_a_wrong_cell(tmp_path, row
 @pytest.mark.parametrize(("cell", "found"), [(9.9e37, r"9.9e\+37, which"), (-1e38, "-1e")])
 def test_the_mark_of_an_overload_is_no_number(cell, found):
     with pytest.raises(DataError, match=f"row 2: is {found}.*instruments write at an overload"):
-        table(F=[1.0, cell]).finite("F")
-    assert table(F=[1.0, 1e29]).finite("F")[1] == 1e29
+        table(F=[1.0]).require_finite("F", np.array([1.0, cell]))
+    table(F=[1.0]).require_finite("F", np.array([1.0, 1e29]))
 
 
 def test_equal_columns_of_one_header_are_one():

@@ -33,7 +33,7 @@ def read_nearest(kind: str, folder: Path) -> SettingsTable | None:
     Raises:
         SettingsError: As `read_section` and `nearest_columns`.
     """
-    file, stated = nearest_columns(kind, folder), _nearest_source(kind, folder)
+    file, stated = nearest_columns(kind, folder)
     if file is None:
         return None
     return read_section(kind, file, source=None if stated is None else stated[1])
@@ -74,8 +74,10 @@ def read_section(
     return SettingsTable(common | entries | nearest_one, file=file, path=path)
 
 
-def nearest_columns(kind: str, folder: Path) -> Path | None:
+def nearest_columns(kind: str, folder: Path) -> tuple[Path | None, tuple[Path, str] | None]:
     """Find the `columns.toml` for a kind of table: in its folder, or in the nearest one above.
+
+    Beside it stands the nearest one that states a source for the kind, with that source.
 
     One that has nothing for this kind is passed over, but taken, for its source, if there is no
     other. One without sections above the table's folder is for legs if it maps their angles, else
@@ -88,10 +90,17 @@ def nearest_columns(kind: str, folder: Path) -> Path | None:
     Raises:
         SettingsError: A `columns.toml` on the way cannot be read as TOML.
     """
-    found = _documents(folder)
-    fits = (file for file, content, beside in found if is_for(kind, content, beside=beside))
-    others = (file for file, content, _ in _documents(folder) if gives_source(kind, content))
-    return next(fits, None) or next(others, None)
+    mapping = other = stated = None
+    for file, document, beside in _documents(folder):
+        is_mapping = is_for(kind, document, beside=beside)
+        if is_mapping or _gives_source(kind, document):
+            stated = stated or _stated_source(kind, file, document)
+            other = other or file
+        if is_mapping:
+            mapping = mapping or file
+        if mapping and stated:
+            break
+    return mapping or other, stated
 
 
 def columns_above(
@@ -111,7 +120,7 @@ def columns_above(
     if named is not None:
         return ()
     root = table.parent if root is None else root
-    mapping, stated = nearest_columns(kind, table.parent), _nearest_source(kind, table.parent)
+    mapping, stated = nearest_columns(kind, table.parent)
     notes = []
     if mapping and not mapping.is_relative_to(root) and _has_entries(kind, mapping):
         notes += [f"{table.name}: columns are those of {mapping}, the nearest for {kind} above it"]
@@ -124,15 +133,12 @@ def _has_entries(kind: str, file: Path) -> bool:
     return bool(set(read_section(kind, file).left) - {"source"})
 
 
-def _nearest_source(kind: str, folder: Path) -> tuple[Path, str] | None:
-    """Return the nearest `columns.toml` that states a source for a kind of table, and that."""
-    for file, document, beside in _documents(folder):
-        if not (gives_source(kind, document) or is_for(kind, document, beside=beside)):
-            continue
-        for entries, path in ((document.get(kind), kind), (document, "")):
-            if isinstance(entries, dict) and "source" in entries:
-                table = SettingsTable(entries, file=file, path=path)
-                return file, (read_source(table) or "") if kind == RIG else table.text("source")
+def _stated_source(kind: str, file: Path, document: Mapping[str, Any]) -> tuple[Path, str] | None:
+    """Return a `columns.toml` and the source that it states for a kind of table; None if none."""
+    for entries, path in ((document.get(kind), kind), (document, "")):
+        if isinstance(entries, dict) and "source" in entries:
+            table = SettingsTable(entries, file=file, path=path)
+            return file, (read_source(table) or "") if kind == RIG else table.text("source")
     return None
 
 
@@ -211,7 +217,7 @@ def is_for(kind: str, document: Mapping[str, Any], *, beside: bool) -> bool:
     return kind == (LEGS if any(name.startswith("theta") for name in columns) else RIG)
 
 
-def gives_source(kind: str, document: Mapping[str, Any]) -> bool:
+def _gives_source(kind: str, document: Mapping[str, Any]) -> bool:
     """Return whether the source of a `columns.toml` holds for kinds that it does not map, too."""
     return kind not in PLAIN or is_sectioned(document)
 

@@ -54,28 +54,28 @@ def test_a_guess_that_nobody_checked_is_refused(tmp_path, text, keys):
 def test_the_nearest_columns_with_something_for_the_kind_are_taken(tmp_path, monkeypatch):
     deep = tmp_path / "a" / "b"
     deep.mkdir(parents=True)
-    assert nearest_columns("track", deep) is None
+    assert nearest_columns("track", deep)[0] is None
     (tmp_path / "columns.toml").write_text("[track.columns.y_m]\nsign = -1\n")
     (tmp_path / "a" / "columns.toml").write_text('source = "real"\n')
-    assert nearest_columns("track", deep) == tmp_path / "columns.toml"
-    assert nearest_columns("imu", deep) == tmp_path / "a" / "columns.toml"  # for its source
-    assert nearest_columns("rig", deep) == tmp_path / "a" / "columns.toml"
+    assert nearest_columns("track", deep)[0] == tmp_path / "columns.toml"
+    assert nearest_columns("imu", deep)[0] == tmp_path / "a" / "columns.toml"  # for its source
+    assert nearest_columns("rig", deep)[0] == tmp_path / "a" / "columns.toml"
     (deep / "columns.toml").write_text("[track]\n")
-    assert nearest_columns("track", deep) == deep / "columns.toml"
+    assert nearest_columns("track", deep)[0] == deep / "columns.toml"
     monkeypatch.chdir(tmp_path)
-    assert nearest_columns("rig", Path("a/b")) == Path("a/columns.toml")
+    assert nearest_columns("rig", Path("a/b"))[0] == Path("a/columns.toml")
 
 
 def test_a_map_of_a_rig_above_is_none_of_legs_and_the_other_way_round(tmp_path):
     below = tmp_path / "walks"
     below.mkdir()
     (tmp_path / "columns.toml").write_text('[columns]\nnormal_force = "FZ"\n')
-    assert nearest_columns("legs", below) is None
-    assert nearest_columns("rig", below) == tmp_path / "columns.toml"
+    assert nearest_columns("legs", below)[0] is None
+    assert nearest_columns("rig", below)[0] == tmp_path / "columns.toml"
     (tmp_path / "columns.toml").write_text('[columns]\ntheta1 = "fl"\n')
-    assert nearest_columns("rig", below) is None
-    assert nearest_columns("legs", below) == tmp_path / "columns.toml"
-    assert nearest_columns("rig", tmp_path) == tmp_path / "columns.toml"
+    assert nearest_columns("rig", below)[0] is None
+    assert nearest_columns("legs", below)[0] == tmp_path / "columns.toml"
+    assert nearest_columns("rig", tmp_path)[0] == tmp_path / "columns.toml"
 
 
 @pytest.mark.parametrize(
@@ -128,6 +128,6 @@ def test_a_result_of_a_command_takes_no_columns_from_above(tmp_path):
     result = tmp_path / "walk"
     result.mkdir()
     (tmp_path / "columns.toml").write_text('[legs.columns]\ntheta1 = "fl"\n')
-    assert nearest_columns("legs", result) == tmp_path / "columns.toml"
+    assert nearest_columns("legs", result)[0] == tmp_path / "columns.toml"
     (result / "manifest.json").write_text('{"kind": "walk", "schema": 1, "outputs": {}}')
-    assert nearest_columns("legs", result) is None
+    assert nearest_columns("legs", result)[0] is None

@@ -16,6 +16,7 @@ from typer import Option
 
 from zebro_lab.files.errors import SettingsError, ZebroLabError
 from zebro_lab.files.provenance import software
+from zebro_lab.terminal.request_command import Range
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -45,7 +46,8 @@ class WorkersRequest:
 
     threads: Annotated[
         int | None,
-        Option(min=1, help="Cores of this machine to use; default: all."),
+        Option(help="Cores of this machine to use; default: all."),
+        Range(least=1),
     ] = None
     scheduler: SchedulerOption = None
 

@@ -10,6 +10,7 @@ from typer import Argument, Option
 from model.slip_laws import SLIP_LAWS
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.terminal.picture_options import FormatOption
+from zebro_lab.terminal.request_command import Range
 from zebro_lab.workers import WorkersRequest
 
 COMPARE: Final = "compare"
@@ -89,12 +90,12 @@ class CalibrationRequest:
     max_steps: Annotated[
         int,
         Option(
-            min=1,
             help="Largest number of sampler moves; a fit that has not converged ends then, but not "
             "before its first look at 500 moves.",
         ),
+        Range(least=1),
     ] = 30_000
-    seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
+    seed: Annotated[int, Option(help="Seed of all random numbers."), Range(least=0)] = 1
     workers: WorkersRequest = field(default_factory=WorkersRequest)
     resume: Annotated[bool, Option("--resume", help="Resume the stopped fit in --out.")] = False
     form: FormatOption = "png"

@@ -23,7 +23,8 @@ Fast: TypeAlias = Annotated[
 ]
 Seed: TypeAlias = Annotated[
     int,
-    Option(min=0, help="Which simulated rig: errors of its load cell; noise is new in each run."),
+    Option(help="Which simulated rig: errors of its load cell; noise is new in each run."),
+    Range(least=0),
 ]
 
 

@@ -74,10 +74,10 @@ class RecordRequest:
     seed: Annotated[
         int | None,
         Option(
-            min=0,
             help="Seed of the random numbers of simulated devices; default: a new one for each "
             "run, noted in run.json.",
         ),
+        Range(least=0),
     ] = None
 
     def __post_init__(self) -> None:
@@ -111,7 +111,7 @@ Socket: TypeAlias = Annotated[
     bool, Option("--socket", help="Listen at a TCP port (socket://) instead of a pseudo-terminal.")
 ]
 Drop: TypeAlias = Annotated[
-    float, Option(min=0.0, max=1.0, help="Probability that a frame is lost.")
+    float, Option(help="Probability that a frame is lost."), Range(least=0, most=1)
 ]
 
 

@@ -10,7 +10,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.output import TEXT, Output
-from zebro_lab.terminal.request_command import request_command
+from zebro_lab.terminal.request_command import Range, request_command
 
 app = Application(
     no_args_is_help=True, help="Run a simulated device and print the port to connect to."
@@ -18,7 +18,8 @@ app = Application(
 
 Duration = Annotated[
     float | None,
-    typer.Option(min=0.0, metavar="SECONDS", help="Duration [s]; default: until Ctrl-C."),
+    typer.Option(metavar="SECONDS", help="Duration [s]; default: until Ctrl-C."),
+    Range(least=0),
 ]
 
 

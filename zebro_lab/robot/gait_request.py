@@ -88,8 +88,10 @@ class GaitRequest:
     tau_flight: Annotated[float | None, Option(metavar="SECONDS", help=_FLIGHT), Range(above=0)] = (
         None
     )
-    tau_turn: Annotated[float | None, Option(min=0.0, metavar="SECONDS", help=_TURN)] = None
-    tau_double: Annotated[float | None, Option(min=0.0, metavar="SECONDS", help=_DOUBLE)] = None
+    tau_turn: Annotated[float | None, Option(metavar="SECONDS", help=_TURN), Range(least=0)] = None
+    tau_double: Annotated[float | None, Option(metavar="SECONDS", help=_DOUBLE), Range(least=0)] = (
+        None
+    )
 
     def given(self) -> dict[str, object]:
         """Return the options that are not None by name, except the name of the gait."""

@@ -91,7 +91,7 @@ class SuggestRequest:
         Option(metavar="HERTZ", help="Sample rate [Hz]; default: that of the rig's profile."),
         Range(above=0.0, most=HIGHEST_RATE),
     ] = None
-    seed: Annotated[int, Option(min=0, help="Seed of the posterior's draws.")] = 1
+    seed: Annotated[int, Option(help="Seed of the posterior's draws."), Range(least=0)] = 1
     out: Annotated[Path, Option(metavar="DIR", help="Folder to write, with plan.toml.")] = Path(
         "plan-suggested"
     )

@@ -5,7 +5,7 @@ import inspect
 import math
 from collections.abc import Callable, Iterator, Mapping
 from copy import copy
-from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from functools import wraps
 from inspect import Parameter
 from pathlib import Path
@@ -20,8 +20,7 @@ from typer.models import ParameterInfo
 class Range:
     """Range of a number; it stands beside the `typer.Option` in the annotation of a field.
 
-    A limit that belongs to the range may as well be given as `min` or `max` of the option. NaN and
-    infinity are outside every range.
+    NaN and infinity are outside every range.
 
     Attributes:
         least: Smallest number of the range; None for no limit.
@@ -142,8 +141,8 @@ def _is_repeatable(hint: Any) -> bool:
 def completed(hint: Any) -> Any:
     """Complete an annotation with a `typer.Option` or `typer.Argument`; return others unchanged.
 
-    A missing metavar is set by the type; `min`, `max` and `Range` are put into the help, and
-    checked after parsing together with that every number is finite.
+    A missing metavar is set by the type; a `Range` is put into the help, and checked after parsing
+    together with that every number is finite.
 
     Args:
         hint: Type annotation of a parameter or field.
@@ -159,7 +158,10 @@ def completed(hint: Any) -> Any:
     if info.metavar is None and bool not in types:
         info.metavar = _metavar(types)
     if info.parser is None and (float in types or int in types):
-        _limit(info, next((each for each in metadata if isinstance(each, Range)), Range()))
+        limits = next((each for each in metadata if isinstance(each, Range)), Range())
+        if str(limits) and info.help:
+            info.help = f"{info.help} Allowed: {limits}."
+        info.callback = _check(limits, info.callback)
     return Annotated[kind, info]
 
 
@@ -178,19 +180,6 @@ def _metavar(types: tuple[Any, ...]) -> str | None:
         return "|".join(map(str, get_args(types[0])))
     names = [METAVARS.get(each) for each in types]
     return None if None in names else " ".join(map(str, names))
-
-
-def _limit(info: ParameterInfo, limits: Range) -> None:
-    """Move `min` and `max` of an option into its limits; show those in the help, and check them."""
-    limits = replace(
-        limits,
-        least=info.min if info.min is not None else limits.least,
-        most=info.max if info.max is not None else limits.most,
-    )
-    info.min = info.max = None
-    if str(limits) and info.help:
-        info.help = f"{info.help} Allowed: {limits}."
-    info.callback = _check(limits, info.callback)
 
 
 def _check(limits: Range, then: Callable[..., Any] | None) -> Callable[[Any], Any]:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from zebro_lab.terminal.output import TEXT, Output
-from zebro_lab.terminal.request_command import request_command
+from zebro_lab.terminal.request_command import Range, request_command
 from zebro_lab.track.annotate_request import AnnotateRequest
 
 EPILOG = """
@@ -34,7 +34,9 @@ Grid = Annotated[
     typer.Option(metavar="PNG", help="Only draw --photo with a grid of pixels."),
 ]
 Around = Annotated[str | None, typer.Option(metavar="U,V", help="Enlarge --grid at this pixel.")]
-Reach = Annotated[int, typer.Option(min=5, help="Half the width of the enlarged part [px].")]
+Reach = Annotated[
+    int, typer.Option(help="Half the width of the enlarged part [px]."), Range(least=5)
+]
 
 
 @request_command()

@@ -62,10 +62,10 @@ class TimeRequest:
     every: Annotated[
         float | None,
         Option(
-            min=0.0,
             metavar="SECONDS",
             help="Least time between frames of a video [s]; default: 0.5; 0 takes all.",
         ),
+        Range(least=0),
     ] = None
     clock: Annotated[
         Path | None, Option(metavar="PHOTO", help="Photograph of what `camera clock` shows.")

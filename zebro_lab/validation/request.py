@@ -65,7 +65,7 @@ class ValidateRequest:
             "have starts, stops or turns.",
         ),
     ] = False
-    seed: Annotated[int, Option(min=0, help="Seed of all random numbers.")] = 1
+    seed: Annotated[int, Option(help="Seed of all random numbers."), Range(least=0)] = 1
     trajectory: TrajectoryRequest = field(default_factory=TrajectoryRequest)
     columns: Annotated[
         Path | None,
@@ -85,10 +85,10 @@ class ValidateRequest:
     max_difference: Annotated[
         float,
         Option(
-            min=0.0,
             metavar="SECONDS",
             help="Largest difference of the times of two matched poses [s].",
         ),
+        Range(least=0),
     ] = 0.01
     distance: Annotated[
         tuple[float, ...],

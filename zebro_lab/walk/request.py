@@ -29,15 +29,13 @@ class BandRequest:
 
     draws: Annotated[
         int,
-        Option(
-            min=0, help="Draws for the band (draws.npz, band.csv, band.png), 2 or more; 0 for none."
-        ),
+        Option(help="Draws for the band (draws.npz, band.csv, band.png), 2 or more; 0 for none."),
+        Range(least=0),
     ] = 0
-    seed: Annotated[int, Option(min=0, help="Seed of the band's draws.")] = 1
+    seed: Annotated[int, Option(help="Seed of the band's draws."), Range(least=0)] = 1
     offset_sd_deg: Annotated[
         float | None,
         Option(
-            min=0.0,
             metavar="DEG",
             help="Standard deviation of the unknown leg offsets [deg]; default: encoder step / "
             "sqrt(12), or 0.3 for angles that are not in encoder steps.",

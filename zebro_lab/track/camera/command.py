@@ -8,7 +8,7 @@ import typer
 
 from zebro_lab.terminal.command_classes import Application
 from zebro_lab.terminal.output import TEXT, Output
-from zebro_lab.terminal.request_command import request_command
+from zebro_lab.terminal.request_command import Range, request_command
 from zebro_lab.track.camera.request import CameraRequest
 
 if TYPE_CHECKING:
@@ -116,9 +116,8 @@ def calibration_lines(result: "CameraResult") -> list[str]:
 def clock(
     duration: Annotated[
         float | None,
-        typer.Option(
-            min=0.0, metavar="SECONDS", help="Time to show it [s]; default: until Ctrl-C."
-        ),
+        typer.Option(metavar="SECONDS", help="Time to show it [s]; default: until Ctrl-C."),
+        Range(least=0),
     ] = None,
 ) -> None:
     """Show the computer's time as a QR code to photograph; give the photograph to track --clock."""

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
-from rich.text import Text
 
 from zebro_lab.files.source_names import is_simulated
 from zebro_lab.terminal.tables import plain
@@ -37,7 +36,8 @@ def print_result(
     for part in parts:
         console.print(plain(part) if isinstance(part, str) else part)
     files = list(files)
-    console.print(Text(f"\nwritten to {out}" + ":" * bool(files)))
+    console.print()
+    console.print(plain(f"written to {out}" + ":" * bool(files)))
     for file in files:
         console.print(plain(f"  {file}"))
 

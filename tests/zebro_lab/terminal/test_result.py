@@ -17,6 +17,15 @@ def test_what_is_simulated_is_said_first_and_the_folder_last():
     assert "SIMULATED" not in console.export_text()
 
 
+def test_control_characters_in_names_are_escaped():
+    console = Console(record=True, width=80, quiet=False)
+    out = Path("out\x1b[31m\n")
+    print_result(console, [], source="real", out=out, files=[out / "a.csv"])
+    assert console.export_text().splitlines() == [
+        "", r"written to out\x1b[31m\n:", r"  out\x1b[31m\n/a.csv",
+    ]  # fmt: skip
+
+
 def test_warnings_are_taken_out_in_their_order():
     notes = ("a", "WARNING: b", "c", "WARNING: d")
     assert warnings_first(notes) == (["WARNING: b", "WARNING: d"], ["a", "c"])

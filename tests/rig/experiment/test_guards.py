@@ -120,7 +120,6 @@ def test_readings_that_come_ever_later_stop_the_discs(lab):
     assert twin.at_rest()
 
 
-LOOK = 0.01
 EACH = 10
 """Readings of a look."""
 

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from model.bayes.averaging.blocks import SlipBlocks, block_means
 from support.slip_runs import mean_of_blocks, samples, white
 
-NOISE = 0.01
 RUN_LENGTHS = st.lists(st.integers(1, 60), min_size=1, max_size=8)
 
 # --- cutting

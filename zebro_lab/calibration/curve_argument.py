@@ -18,8 +18,7 @@ from model.slip.thesis import thesis_curve
 from zebro_lab.calibration.coulomb_argument import COULOMB, coulomb_numbers
 from zebro_lab.calibration.slip_argument import THESIS
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.runs.data_paths import DataSource
-from zebro_lab.tables.columns_file import read_columns
+from zebro_lab.tables.columns_file import rig_columns
 from zebro_lab.tables.rig_table import RigTable, normal_force
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.slip_source import slip
@@ -184,7 +183,7 @@ def is_curve_table(path: Path) -> bool:
     """
     if not path.is_file():
         return False
-    columns = DataSource(path, path.parent).columns()
+    columns = rig_columns(path)
     raw = read_table_file(path, sheet=columns.sheet)
     samples = {"t", "run", "omega_leg", "omega_ground"}
     has_runs = bool(columns.runs.by) or columns.runs.gap is not None
@@ -202,18 +201,12 @@ def read_curve_table(path: Path, *, columns: Path | None = None) -> CurveTable:
         ZebroLabError: The table or its column map cannot be read, a column or the slip definition
             is missing, a value is not finite or impossible, or there are fewer than 3 points.
     """
-    entries = DataSource(path, path.parent).columns() if columns is None else read_columns(columns)
+    entries = rig_columns(path, columns)
     raw = read_table_file(path, sheet=entries.sheet)
     table = RigTable(raw, entries, kept_rows(raw, entries.keep))
     if len(table.rows) < _FEWEST:
         raise DataError(f"has {len(table.rows)} points; a curve needs {_FEWEST} or more", file=path)
     ratio = slip(table)
-    if table.source_of("traction_force") is None:
-        raise raw.fault(
-            "is missing; a table of a curve has slip_ratio, traction_force [N] and normal_force "
-            f"[N]; map other headers in {table.columns.stated_in}",
-            "traction_force",
-        )
     sources = [each for each in (entries.source, raw.source) if each]
     return CurveTable(
         slip=ratio.ratio,

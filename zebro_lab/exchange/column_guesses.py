@@ -17,12 +17,11 @@ from zebro_lab.robot.imu_log import IMU_UNITS, is_in_g
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
 from zebro_lab.tables.columns import IMU, KINDS, LEGS, RIG, TRACK
 from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.rig_columns import CANONICAL
+from zebro_lab.tables.rig_columns import RIG_UNITS
 from zebro_lab.track.trajectory.table import MAPPED_UNITS, QUATERNION
 
 UNITS: Final[Mapping[str, Mapping[str, str | None]]] = {
-    RIG: {name: column.unit for name, column in CANONICAL.items()},
-    LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: MAPPED_UNITS,
+    RIG: RIG_UNITS, LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: MAPPED_UNITS,
 }  # fmt: skip
 """SI unit of each canonical column, None for text, by kind of table."""
 _SHORT: Final = {"t_s": "t", "x_m": "x", "y_m": "y", "z_m": "z", "yaw_rad": "yaw"}

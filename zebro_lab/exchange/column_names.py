@@ -143,10 +143,10 @@ def split_header(header: str) -> tuple[str, str | None]:
     if unit is not None:
         bracketed = rf"[\[(<{{]\s*{re.escape(unit)}\s*[\])>}}]"
         if re.search(bracketed, header):
-            return _plain(re.sub(bracketed, " ", header)), unit
+            return plain_name(re.sub(bracketed, " ", header)), unit
         before = header.removesuffix(unit).rstrip()
-        return _plain(re.sub(r"([/,]|\bin)$", "", before)), unit
-    plain = _plain(header)
+        return plain_name(re.sub(r"([/,]|\bin)$", "", before)), unit
+    plain = plain_name(header)
     if ending := suffix_in_header(header):
         return plain.removesuffix(f"_{ending[0]}"), ending[1]
     return plain, None
@@ -154,10 +154,6 @@ def split_header(header: str) -> tuple[str, str | None]:
 
 def plain_name(header: str) -> str:
     """Return a header in lower case with "_" for blanks and marks, its unit included."""
-    return _plain(header)
-
-
-def _plain(name: str) -> str:
-    text = name.strip().casefold().translate(_GREEK)
+    text = header.strip().casefold().translate(_GREEK)
     begins = "__" if text.startswith("__") else ""  # __time
     return begins + re.sub(r"[\s.,;:\-\[\](){}/]+", "_", text).strip("_")

@@ -10,8 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from model.arrays import Array
-from zebro_lab.files.errors import DataError
-from zebro_lab.tables.columns import Columns, looks_like_other
+from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 
 _QUATERNION: Final = ("qw", "qx", "qy", "qz")
@@ -25,7 +24,7 @@ IMU_UNITS: Final[Mapping[str, str]] = {
     **dict.fromkeys(_RATE, "rad/s"),
     **dict.fromkeys(_FORCE, "m/s^2"),
 }
-_NORM_TOLERANCE: Final = 0.05
+_NORM_TOLERANCE: Final = 0.05  # of a quaternion's length; files round to a few digits
 NEAR_G: Final = 0.15
 _MOST_NAMED: Final = 6  # columns that are not read
 LARGEST_TILT: Final = 1.0
@@ -101,16 +100,11 @@ def _orientation(table: RawTable, mapping: Columns) -> tuple[Array, bool]:
     if mapping.has(table, "qw"):
         columns = [_numbers(table, mapping, name) for name in _QUATERNION]
         quaternion = np.column_stack(columns)
-        _require_unit(table, mapping, quaternion)
+        require_unit_quaternions(table, mapping, quaternion)
         return quaternion, True
     if not mapping.has(table, "roll"):
-        other = looks_like_other(table.columns, mapping.mapped)
-        raise DataError(
-            f"holds no orientation; expected the columns {', '.join(_QUATERNION)}, or roll and "
-            f"pitch, found {', '.join(table.columns)}{other}; else map them in [imu.columns] of a "
-            "columns.toml",
-            file=table.path,
-        )
+        what = "orientation, roll and pitch or a quaternion qw, qx, qy, qz,"
+        raise mapping.missing(table, "roll", what=what)
     roll, pitch = (_numbers(table, mapping, name) for name in ("roll", "pitch"))
     known = mapping.has(table, "yaw")
     yaw = _numbers(table, mapping, "yaw") if known else np.zeros(len(roll))
@@ -124,13 +118,11 @@ def _require_radians(table: RawTable, mapping: Columns, tilt: Array) -> None:
     largest = float(np.max(np.abs(tilt), initial=0.0))
     if largest <= LARGEST_TILT or mapping.states_unit(table, "roll"):
         return
-    raise table.fault(
+    found = (
         f"roll and pitch go up to {largest:.3g} rad, {np.degrees(largest):.3g} deg, if they are in "
-        f"rad; expected at most {LARGEST_TILT:g} rad where their unit is not stated: state it, "
-        f'such as [{mapping.where}columns.roll] unit = "deg", and so for pitch and yaw, or "rad" '
-        "if that is right",
-        mapping.mapped["roll"].name,
+        f"rad; expected at most {LARGEST_TILT:g} rad where their unit is not stated"
     )
+    raise mapping.unstated(table, "roll", found, unit="deg", others="pitch and yaw")
 
 
 def _numbers(table: RawTable, mapping: Columns, name: str) -> Array:
@@ -150,12 +142,11 @@ def _require_no_multiples_of_g(table: RawTable, mapping: Columns, force: list[Ar
         return
     usual = float(np.median(np.linalg.norm(np.array(force), axis=0)))
     if is_in_g(usual):
-        raise table.fault(
+        found = (
             f"the specific force is {usual:.3g} m/s^2 in the middle, if it is in m/s^2; expected "
-            f"about 9.81 of a body on the ground: state its unit, such as [{mapping.where}columns."
-            'force_x] unit = "g", and so for y and z, or "m/s^2" if that is right',
-            columns[0].name,
+            "about 9.81 of a body on the ground"
         )
+        raise mapping.unstated(table, "force_x", found, unit="g", others="force_y and force_z")
 
 
 def is_in_g(usual: float) -> bool:
@@ -167,12 +158,16 @@ def is_in_g(usual: float) -> bool:
     return abs(usual - 1.0) < NEAR_G
 
 
-def _require_unit(table: RawTable, mapping: Columns, quaternion: Array) -> None:
-    norm = np.linalg.norm(quaternion, axis=1)
+def require_unit_quaternions(table: RawTable, mapping: Columns, quaternion: Array) -> None:
+    """Check that quaternions in any order of their parts, shape (n, 4), have length 1.
+
+    Raises:
+        DataError: The length of one differs by more than `_NORM_TOLERANCE`.
+    """
+    norm = np.linalg.norm(np.clip(quaternion, -1e3, 1e3), axis=1)  # damage may be huge
     good = np.abs(norm - 1) <= _NORM_TOLERANCE
-    if not good.all():
-        index = int(np.argmin(good))
-        problem = (
-            f"the quaternion has length {norm[index]:.3g}; expected 1 within {_NORM_TOLERANCE}"
-        )
-        raise table.fault(problem, mapping.mapped["qw"].name, index)
+    problem = "the quaternion has length {}; expected 1 within {}: is the order of columns right?"
+    table.require(
+        mapping.mapped["qw"].name, good,
+        lambda index: problem.format(f"{norm[index]:.3g}", _NORM_TOLERANCE),
+    )  # fmt: skip

@@ -278,11 +278,13 @@ class Columns:
         """
         header = self.mapped[name].name
         other = looks_like_other(table.columns, self.mapped)
-        frames = _frames(table) if self.units[name] == "s" else ""
+        names = table.columns if self.units[name] == "s" else ()
+        frames = next((each for each in names if _FRAMES.fullmatch(each)), None)
+        rate = f'; of frames at 100 Hz: name = "{frames}", unit = "s", scale = 0.01'
         return table.fault(
             f"the column of the {what} is missing{other}; {nearest(header, list(table.columns))}; "
             f"if its header differs, map it in {self.stated_in}: [{self.where}columns.{name}] "
-            f"(zebro-lab init writes that file){frames}",
+            f"(zebro-lab init writes that file){rate if frames else ''}",
             header,
         )
 
@@ -304,37 +306,43 @@ class Columns:
         if mapped.name != name:  # the ending of t_s itself is no statement of who wrote the file
             stated = stated or table.unit_of(mapped.name, "s") is not None
         if not stated:
-            require_usual_steps(table, mapped.name, np.diff(values), f"{self.where}columns.{name}")
+            self.require_usual_steps(table, name, np.diff(values))
         return values
 
+    def require_usual_steps(self, table: RawTable, name: str, steps: Array) -> None:
+        """Check that times whose unit nobody states are those of samples, if they are in seconds.
 
-def require_usual_steps(table: RawTable, header: str, steps: Array, section: str) -> None:
-    """Check that times whose unit nobody states are those of samples, if they are in seconds.
+        Args:
+            table: The table.
+            name: Canonical name of its column of times.
+            steps: Differences of successive times, without those between runs, shape (n,) [s].
 
-    Args:
-        table: The table.
-        header: Header of its column of times.
-        steps: Differences of successive times, those between runs left out, shape (n,) [s].
-        section: Dotted section of the column in a `columns.toml`, for the message.
+        Raises:
+            DataError: Half of the steps or more are outside `INTERVALS`.
+        """
+        usual = float(np.median(steps)) if len(steps) else 0.0
+        if usual > 0 and not INTERVALS[0] <= usual <= INTERVALS[1]:
+            found = (
+                f"samples are {usual:.3g} s apart, {steps.sum():.5g} s in all, if times are in s; "
+                f"expected {INTERVALS[0]:g} to {INTERVALS[1]:g} s between samples"
+            )
+            raise self.unstated(table, name, found, unit="ms" if usual > 1 else "min")
 
-    Raises:
-        DataError: Half of the steps or more are outside `INTERVALS`.
-    """
-    usual = float(np.median(steps)) if len(steps) else 0.0
-    if usual <= 0 or INTERVALS[0] <= usual <= INTERVALS[1]:
-        return
-    unit = "ms" if usual > 1 else "min"
-    raise table.fault(
-        f"samples are {usual:.3g} s apart, {steps.sum():.5g} s in all, if times are in s; "
-        f"expected {INTERVALS[0]:g} to {INTERVALS[1]:g} s between samples: state the unit in "
-        f'{COLUMNS_FILE}, such as [{section}] unit = "{unit}", or "s" if that is right',
-        header,
-    )
+    def unstated(
+        self, table: RawTable, name: str, found: str, *, unit: str, others: str = ""
+    ) -> DataError:
+        """Return, without raising, an error that numbers without a stated unit do not fit SI.
 
-
-def _frames(table: RawTable) -> str:
-    """Return advice for a table whose time is a number of frames; "" for others."""
-    frames = next((name for name in table.columns if _FRAMES.fullmatch(name)), None)
-    if frames is None:
-        return ""
-    return f'; of frames at 100 Hz: name = "{frames}", unit = "s", scale = 0.01'
+        Args:
+            table: The table.
+            name: Canonical name of the column.
+            found: What was found, and what was expected.
+            unit: Unit that the numbers probably are in.
+            others: Canonical names of further columns in the same unit.
+        """
+        return table.fault(
+            f"{found}; state the unit in {self.stated_in}, such as [{self.where}columns.{name}] "
+            f'unit = "{unit}"{others and f", and so for {others}"}, or "{self.units[name]}" if '
+            "that is right",
+            self.mapped[name].name,
+        )

@@ -15,7 +15,7 @@ from zebro_lab.tables.columns import RIG, TRACK, Columns, MappedColumn, scaled
 from zebro_lab.tables.columns_sections import read_nearest, read_section, read_source
 from zebro_lab.tables.date_cells import is_date_unit
 from zebro_lab.tables.rig_columns import (
-    CANONICAL,
+    RIG_UNITS,
     RigColumns,
     RigErrorsStated,
     RunRule,
@@ -76,12 +76,11 @@ def parse_columns(table: SettingsTable) -> RigColumns:
     Raises:
         SettingsError: It has an unknown key, unit or value, or more than one run rule.
     """
-    units = {name: column.unit for name, column in CANONICAL.items()}
     columns_file = RigColumns(
         file=Path(table.file),
         source=read_source(table),
         sheet=table.text("sheet") if "sheet" in table else None,
-        columns=_mapped_columns(table, units),
+        columns=_mapped_columns(table, RIG_UNITS),
         constants=_quantities(table.table("constants"), _CONSTANTS, {}),
         runs=_runs(table),
         keep=read_row_conditions(table.table("rows")),

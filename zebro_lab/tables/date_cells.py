@@ -53,22 +53,25 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
     cells = table.column(name)
     if pd.api.types.is_numeric_dtype(cells) and not cells.isna().all():
         raise table.fault(f'holds numbers; expected dates, as unit = "{unit}" states', name)
+
+    def require(good: NDArray[np.bool_], problem: str) -> None:
+        table.require(name, good, lambda index: f"'{cells.iloc[index]}' {problem}")
+
     empty = cells.isna().to_numpy(dtype=bool)
     texts = cells.map(lambda cell: cell if isinstance(cell, str) else _iso(cell)).str.strip()
     texts = texts.mask(empty)
     if unit == CLOCK:
         found = pd.to_timedelta(texts.str.replace(",", ".", regex=False), errors="coerce")
         seconds = found.dt.total_seconds().to_numpy(dtype=float)
-        _require(table, name, ~np.isnan(seconds) | empty, f"{_UNREAD} 12:00:00.5")
+        require(~np.isnan(seconds) | empty, f"{_UNREAD} 12:00:00.5")
         return _past_midnight(seconds)
     zone = unit.removeprefix("date").strip() or None
     zoned = texts.str.contains(_ZONE, na=False).to_numpy(dtype=bool)
     if zone is None:
-        _require(table, name, zoned | empty, 'has no time zone; state it in columns.toml: unit = '
-                 '"date UTC" or "date +01:00"')  # fmt: skip
+        advice = 'unit = "date UTC" or "date +01:00"'
+        require(zoned | empty, f"has no time zone; state it in columns.toml: {advice}")
     else:
-        _require(table, name, ~zoned, 'has a time zone of its own; state unit = "date" in '
-                 "columns.toml")  # fmt: skip
+        require(~zoned, 'has a time zone of its own; state unit = "date" in columns.toml')
     texts = texts.str.replace(r"^(\d\d?)\.(\d\d?)\.(\d{4})", r"\3-\2-\1", regex=True)
     texts = texts.str.replace(_NAMED_MONTH, _numbered_month, regex=True)
     texts = texts.str.replace(r"^(\d{4})/(\d\d?)/(\d\d?)", r"\1-\2-\3", regex=True)
@@ -76,7 +79,7 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
     texts = texts.str.replace(r"-(\d)(?=[-T ]|$)", r"-0\1", regex=True)
     found = pd.to_datetime(texts, format="ISO8601", utc=True, errors="coerce")
     since = (found - pd.Timestamp(0, tz="UTC")).dt.total_seconds().to_numpy(dtype=float)
-    _require(table, name, ~np.isnan(since) | empty, f"{_UNREAD} {EXAMPLE}")
+    require(~np.isnan(since) | empty, f"{_UNREAD} {EXAMPLE}")
     return since - _offset(zone)
 
 
@@ -102,10 +105,3 @@ def _offset(zone: str | None) -> float:
         return 0.0
     shift = datetime.fromisoformat(f"2000-01-01T00:00:00{zone}").utcoffset()
     return shift.total_seconds() if shift else 0.0
-
-
-def _require(table: RawTable, name: str, good: NDArray[np.bool_], problem: str) -> None:
-    """Raise `DataError` with the text of the first cell that is not good."""
-    if not good.all():
-        index = int(np.argmin(good))
-        raise table.fault(f"'{table.column(name).iloc[index]}' {problem}", name, index)

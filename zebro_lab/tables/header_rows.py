@@ -101,7 +101,9 @@ def find_header(rows: Sequence[Row], data: DataRows) -> Header:
         units = block.pop(-2)  # above the names
     names, above = _names(block, above, has_units=units is not None)
     if above and "" in names:  # those of the first columns may stand one row higher
-        names = [name or over for name, over in zip(names, _padded(above[-1], names), strict=True)]
+        names = [
+            name or over for name, over in zip(names, _padded(above[-1], len(names)), strict=True)
+        ]
     width = max(len(names), data.width)
     names += [""] * (width - len(names))
     filled = [name.strip() or f"column {i}" for i, name in enumerate(names, start=1)]
@@ -224,14 +226,14 @@ def _distinct(names: Sequence[str]) -> bool:
 def _filled(row: Row, width: int) -> list[str]:
     """Return a row of group names in which an empty cell belongs to the group on its left."""
     filled, last = [], ""
-    for cell in [*row, *[""] * width][:width]:
-        last = cell.strip() or last
+    for cell in _padded(row, width):
+        last = cell or last
         filled.append(last)
     return filled
 
 
-def _padded(row: Row, names: Sequence[str]) -> list[str]:
-    return [cell.strip() for cell in [*row, *[""] * len(names)][: len(names)]]
+def _padded(row: Row, width: int) -> list[str]:
+    return [cell.strip() for cell in [*row, *[""] * width][:width]]
 
 
 def _start(row: Row) -> str:

@@ -3,7 +3,7 @@
 
 import io
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -178,6 +178,21 @@ class RawTable:
             many = f"; it is the first of {bad.sum()} such cells" if bad.sum() > 1 else ""
             problem = f"is {_missing_text(values[first])}; expected {expected}{many}"
             raise self.fault(problem, name, first if rows is None else int(rows[first]))
+
+    def require(self, name: str, good: NDArray[np.bool_], problem: Callable[[int], str]) -> None:
+        """Check a condition on the rows of a column.
+
+        Args:
+            name: Header of the column.
+            good: Whether each row is valid, shape (n,).
+            problem: Returns the message for a row, counted from 0.
+
+        Raises:
+            DataError: A row is invalid; it names the first.
+        """
+        if not good.all():
+            index = int(np.argmin(good))
+            raise self.fault(problem(index), name, index)
 
     def require_increasing(self, column: str, t: Array) -> None:
         """Check that times are strictly increasing.

@@ -27,34 +27,30 @@ class CanonicalColumn:
     """A column that a calibration uses.
 
     Attributes:
-        name: Canonical name of the column.
         unit: SI unit of the column; None if its cells are text.
         meaning: Description in one line, with the sign convention.
     """
 
-    name: str
     unit: str | None
     meaning: str
 
 
 CANONICAL: Mapping[str, CanonicalColumn] = MappingProxyType({
-    column.name: column
-    for column in (
-        CanonicalColumn("t", "s", "time, increasing within a run"),
-        CanonicalColumn("omega_leg", "rad/s", "angular speed of the leg disc"),
-        CanonicalColumn("omega_ground", "rad/s", "angular speed of the ground disc"),
-        CanonicalColumn("angle_leg", "rad", "angle of the leg disc, of one zero; for its run-out"),
-        CanonicalColumn("angle_ground", "rad", "angle of the ground disc, of one zero"),
-        CanonicalColumn("radius_leg", "m", "radius of the leg disc at the contact"),
-        CanonicalColumn("radius_ground", "m", "radius of the ground disc at the contact"),
-        CanonicalColumn("slip_ratio", "dimensionless", "slip ratio, with its definition"),
-        CanonicalColumn("normal_force", "N", "normal force, positive when pressed together"),
-        CanonicalColumn("traction_force", "N", "traction force, positive when driving"),
-        CanonicalColumn("lateral_force", "N", "force across the discs, if the cell measures it"),
-        CanonicalColumn("run", None, "name or number of the run"),
-        CanonicalColumn("slip_definition", None, "material, travel or larger; one in each file"),
-    )
+    "t": CanonicalColumn("s", "time, increasing within a run"),
+    "omega_leg": CanonicalColumn("rad/s", "angular speed of the leg disc"),
+    "omega_ground": CanonicalColumn("rad/s", "angular speed of the ground disc"),
+    "angle_leg": CanonicalColumn("rad", "angle of the leg disc, of one zero; for its run-out"),
+    "angle_ground": CanonicalColumn("rad", "angle of the ground disc, of one zero"),
+    "radius_leg": CanonicalColumn("m", "radius of the leg disc at the contact"),
+    "radius_ground": CanonicalColumn("m", "radius of the ground disc at the contact"),
+    "slip_ratio": CanonicalColumn("dimensionless", "slip ratio, with its definition"),
+    "normal_force": CanonicalColumn("N", "normal force, positive when pressed together"),
+    "traction_force": CanonicalColumn("N", "traction force, positive when driving"),
+    "lateral_force": CanonicalColumn("N", "force across the discs, if the cell measures it"),
+    "run": CanonicalColumn(None, "name or number of the run"),
+    "slip_definition": CanonicalColumn(None, "material, travel or larger; one in each file"),
 })  # fmt: skip
+RIG_UNITS: Mapping[str, str | None] = {name: column.unit for name, column in CANONICAL.items()}
 
 
 @dataclass(frozen=True)
@@ -123,9 +119,7 @@ class RigColumns(Columns):
         rig_errors: Standard deviations of errors of the rig.
     """
 
-    units: Mapping[str, str | None] = field(
-        default_factory=lambda: {name: column.unit for name, column in CANONICAL.items()}
-    )
+    units: Mapping[str, str | None] = field(default_factory=lambda: RIG_UNITS)
     constants: Mapping[str, float] = field(default_factory=dict)
     runs: RunRule = RunRule()
     load_cell: Mapping[str, float] = field(default_factory=dict)

@@ -134,24 +134,15 @@ class RigTable:
         Raises:
             DataError: A row is invalid.
         """
-        if not good.all():
-            raise self.error_at(name, int(np.argmin(good)), problem)
-
-    def error_at(self, name: str, index: int, problem: Callable[[str], str]) -> DataError:
-        """Return, without raising, an error that names a cell.
-
-        Args:
-            name: Canonical name of the column.
-            index: Row among the kept rows, counted from 0.
-            problem: Formats the message, given the cell's value with its unit.
-        """
-        source, row = self.required(name), int(self.rows[index])
+        if good.all():
+            return
+        source, row = self.required(name), int(self.rows[np.argmin(good)])
         si = is_date_unit(source.unit) or source.offset or source.nanoseconds or source.scale != 1
         value = float((source.in_si(self.raw) if si else self.raw.numbers(source.name))[row])
         unit = CANONICAL[name].unit or "" if si else source.unit
         unit = "" if unit == "dimensionless" else unit
         text = problem(f"{value:g} {unit}".rstrip())
-        return self.raw.fault(text, source.name, row, value=value, unit=unit or source.unit)
+        raise self.raw.fault(text, source.name, row, value=value, unit=unit or source.unit)
 
 
 def normal_force(table: RigTable) -> Array:

@@ -9,7 +9,6 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from zebro_lab.tables.columns import require_usual_steps
 from zebro_lab.tables.header_rows import unique_names
 from zebro_lab.tables.rig_table import RigTable
 
@@ -132,7 +131,7 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
     )
     source = table.required("t")
     if not (table.raw.path.is_dir() or source.unit_stated or table.raw.unit_of(source.name, "s")):
-        require_usual_steps(table.raw, source.name, step[inside], "columns.t")
+        table.columns.require_usual_steps(table.raw, "t", step[inside])
     return time
 
 

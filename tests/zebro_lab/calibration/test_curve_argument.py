@@ -104,7 +104,7 @@ def test_headers_units_and_definition_may_be_stated_in_columns_toml(tmp_path):
     ("change", "message"),
     [
         (lambda t: t.drop(columns="slip_definition"), "definition of the slip ratio is not known"),
-        (lambda t: t.drop(columns="traction_force"), "a table of a curve has slip_ratio"),
+        (lambda t: t.drop(columns="traction_force"), "the column of the traction force is missing"),
         (lambda t: t.drop(columns="normal_force"), "normal_force.*is missing"),
         (lambda t: t.head(2), "has 2 points"),
     ],

@@ -140,7 +140,7 @@ def rewritten(name, text):
     [
         (change("legs.csv", fl=(3, "")), DataError, "column 'fl', row 4.*empty"),
         (change("imu.csv", roll=(2, "x")), DataError, "imu.csv, column 'roll', row 3"),
-        (rewritten("imu.csv", "t,a\n0,1\n1,2\n"), DataError, "holds no orientation"),
+        (rewritten("imu.csv", "t,a\n0,1\n1,2\n"), DataError, "of the orientation.* is missing"),
         (change("track.csv", east_mm=(1, "inf")), DataError, "track.csv, column 'east_mm', row 2"),
         (change("track.csv", cov_xx=(1, -1.0)), DataError, "negative eigenvalue"),
         (rewritten("columns.toml", COLUMNS + "\n[imu.columns.roll]\nunit = 'm'"), SettingsError,

@@ -97,7 +97,7 @@ def test_columns_that_no_quantity_is_read_from_are_named():
          "column 'qw', row 2: the quaternion has length 0.9; expected 1 within 0.05"),
         ({"qw": [1.0, 1.0], "qx": [0.0, 0.0], "qy": [0.0, 0.0]}, "the column of the qz of the"),
         ({"roll": [0.0, 0.0]}, "'pitch': the column of the pitch of the body is missing"),
-        ({"heading": [0.0, 0.0]}, "holds no orientation; expected the columns qw, qx, qy, qz"),
+        ({"heading": [0.0, 0.0]}, "orientation, roll and pitch or a quaternion qw, qx, qy, qz, is"),
         ({"t": [0.1, 0.1], "roll": [0.0, 0.0], "pitch": [0.0, 0.0]}, "expected increasing times"),
     ],
 )  # fmt: skip

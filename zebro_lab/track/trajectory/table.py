@@ -12,6 +12,7 @@ from model.arrays import Array
 from model.counted import counted
 from model.poses import Poses
 from model.travel import has_travelled, travel_direction
+from zebro_lab.robot.imu_log import require_unit_quaternions
 from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import kept_rows
@@ -39,7 +40,6 @@ _GAPS: Final = (1e-6, 1e4)
 """Range of the median time between poses; outside the unit cannot be right [s]."""
 _MOST_REPEATED: Final = 0.01
 """Largest share of rows that repeat a stamp with another pose; beyond, stamps are too coarse."""
-_TOLERANCE: Final = 0.05  # of a quaternion's length; files round to a few digits
 MAPPED_UNITS: Final[Mapping[str, str]] = {**POSE_UNITS, "t_sigma": "s", **COVARIANCE}
 """SI unit of each column that `[track.columns]` maps; not every command reads all of them."""
 _HEADERS: Final = {
@@ -123,7 +123,9 @@ def read_table_columns(table: RawTable, mapping: Columns) -> TableColumns:
     kept, repeated = _kept_stamps(table, mapping, columns)
     columns = {name: column[kept] for name, column in columns.items()}
     table = table.part(kept)
-    _require_unit_quaternions(table, mapping, columns)
+    if set(QUATERNION) <= set(columns):
+        quaternion = np.column_stack([columns[name] for name in QUATERNION])
+        require_unit_quaternions(table, mapping, quaternion)
     return TableColumns(columns, (*notes, *repeated), table)
 
 
@@ -191,25 +193,6 @@ def _kept_stamps(
     return np.flatnonzero(~same), notes
 
 
-def _require_unit_quaternions(
-    table: RawTable, mapping: Columns, columns: Mapping[str, Array]
-) -> None:
-    if not set(QUATERNION) <= set(columns):
-        return
-    length = np.linalg.norm(
-        np.column_stack([np.clip(columns[name], -1e3, 1e3) for name in QUATERNION]), axis=1
-    )  # clipped, as damage may be huge
-    wrong = np.abs(length - 1) > _TOLERANCE
-    if wrong.any():
-        index = int(np.argmax(wrong))
-        raise table.fault(
-            f"quaternion length {length[index]:.4g}; expected {1 - _TOLERANCE} to "
-            f"{1 + _TOLERANCE}: check that the order of the columns is that of the layout",
-            mapping.mapped["qw"].name,
-            index,
-        )
-
-
 def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, list[str]]:
     """Return the rows that `[rows] keep` asks for and that hold a pose, and a note on the rest."""
     if mapping.keep:
@@ -233,12 +216,11 @@ def _require_radians(table: RawTable, mapping: Columns, columns: Mapping[str, Ar
     position = np.column_stack([columns["x_m"], columns["y_m"]])
     if are_degrees(columns["yaw_rad"], position):
         largest = float(np.abs(columns["yaw_rad"]).max())
-        raise table.fault(
+        found = (
             f"the heading goes up to {largest:.4g} rad and fits the direction of travel only in "
-            f"degrees; state its unit in {mapping.stated_in}: [track.columns.yaw_rad] "
-            'unit = "deg", or "rad" if that is right',
-            heading.name,
+            "degrees"
         )
+        raise mapping.unstated(table, "yaw_rad", found, unit="deg")
 
 
 def _require_metres(table: RawTable, mapping: Columns, columns: Mapping[str, Array]) -> list[str]:
@@ -255,13 +237,11 @@ def _require_metres(table: RawTable, mapping: Columns, columns: Mapping[str, Arr
     way = float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum())
     speed = way / float(np.ptp(t) or np.inf)
     if speed > FASTEST:
-        raise table.fault(
+        found = (
             f"the path goes at {speed:.3g} m/s, if positions are in m; expected at most "
-            f"{FASTEST:g} m/s where their unit is not stated: state it in {mapping.stated_in}, "
-            f'such as [{mapping.where}columns.x_m] unit = "mm", and so for y_m, or "m" if that is '
-            "right",
-            east.name,
+            f"{FASTEST:g} m/s where their unit is not stated"
         )
+        raise mapping.unstated(table, "x_m", found, unit="mm", others="y_m")
     return [f"positions ('{east.name}', …) are taken in m, since no unit of them is stated"]
 
 

@@ -21,7 +21,7 @@ def read(file, **options):
         ("", "has no pose"),
         ("# only a comment\n", "has no pose"),
         ("0 0 0 0 0 0 0 1\n1 1 0\n", r"row 2 .line 2.: found '1 1 0'; expected 8"),
-        ("# a\n0 0 0 0 0 0 0 2\n", r"row 1 .line 2.: quaternion length 2"),
+        ("# a\n0 0 0 0 0 0 0 2\n", r"row 1 .line 2.: the quaternion has length 2"),
         ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 zero 1\n", r"row 2 .line 2.: found .* zero 1'; expected 8"),
         ("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n", r"row 2 .line 2.: found '1 nan .* finite"),
         ("0 1 2 3\n", r"4 numbers a line; expected 8 .TUM. or 12 .KITTI."),

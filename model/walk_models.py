@@ -13,7 +13,7 @@ from model.leg_state import LegState, corrected
 from model.path_draws import bent_walk
 from model.poses import Poses
 from model.robot import GRAVITY, Robot
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from model.walk.bend import STRAIGHT
 from model.walk.ground import FLAT, Ground
 from model.walk.path import WalkPath

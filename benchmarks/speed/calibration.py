@@ -35,7 +35,7 @@ from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.likelihood import log_likelihood
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.slip.samples import SlipSamples
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import draw_imperfections
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import SimulatedSweep, simulate_sweep

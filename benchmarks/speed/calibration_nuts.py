@@ -22,7 +22,7 @@ from model.bayes.fit import PreparedFit
 from model.bayes.posterior import SlipPosterior
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.slip.definition import slip_per_radius_error
-from model.slip.thesis import THESIS_LAW
+from model.slip.thesis_curve import THESIS_LAW
 
 NUTS_CHAINS, NUTS_WARM_UP, NUTS_DRAWS = 2, 200, 400
 COMPARED = 50  # draws at which both densities are computed

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import SlipLaw, Values
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.errors import ProtocolError
 from rig.slip_rig.imperfections import (
     RigImperfections,

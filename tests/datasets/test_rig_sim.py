@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from model.slip.definition import slip_ratio
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 
 FOLDER = Path(__file__).parents[2] / "datasets" / "rig-sim"
 COMMITTED = sorted(FOLDER.glob("*.csv.gz"))

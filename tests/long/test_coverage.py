@@ -37,7 +37,7 @@ from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.slip.rig_errors import USUAL
 from model.slip.samples import SlipSamples
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import draw_rig, simulate_sweep
 

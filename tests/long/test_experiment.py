@@ -17,7 +17,7 @@ from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell
 from model.slip.definition import SlipDefinition
 from model.slip.samples import SlipSamples
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.experiment.control import Control
 from rig.experiment.run import run_plan
 from rig.slip_rig.decode import measured_slip

@@ -24,7 +24,7 @@ from model.bayes.residuals import analyse_residuals
 from model.bayes.verdict import State, judge
 from model.errors import ModelError
 from model.slip.magic_formula import MagicFormula
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import draw_imperfections
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import SimulatedSweep, simulate_sweep

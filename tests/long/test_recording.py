@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 from benchmarks.speed.recording import measure, report
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.backends import open_rig
 from rig.clock_watch import sample_times
 from rig.imu.profile import decode_orientation, load_imu_profile

@@ -29,7 +29,7 @@ from model.bayes.estimate import Agreement, Estimate, agreement, estimate, thin_
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.posterior import LoadCell
 from model.slip.rig_errors import USUAL, RigErrors
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import draw_rig, simulate_sweep
 

@@ -29,7 +29,7 @@ from model.bayes.fit import not_identified
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.errors import FitError
 from model.slip.rig_errors import USUAL
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_blocks import simulate_blocks

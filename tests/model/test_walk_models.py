@@ -7,7 +7,7 @@ from model.gait.reference import LegReference, SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import Robot
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from model.travel import path_length
 from model.walk.slip import Slip
 from model.walk_models import BASELINES, MODELS, ModelRun, baseline_paths, decides_contact

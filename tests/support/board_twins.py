@@ -5,7 +5,7 @@ import numpy as np
 
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.clock import ManualClock
 from rig.links.byte_link import MemoryLink
 from rig.slip_rig.board import RigBoard

@@ -18,7 +18,7 @@ from model.gait.inexact_log import InexactLog
 from model.gait.reference import SampledReference
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.ground import FLAT, with_slope

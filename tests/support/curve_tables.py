@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 
 THESIS_LOADS = (2.13, 6.63, 8.13, 12.75)
 """Loads of Fig. 4-14 [N]."""

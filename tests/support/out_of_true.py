@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from model.slip.rig_errors import RUN_OUT, RigErrors, radius_ratio_sd, run_out_scatter
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import SimulatedSweep, simulate_sweep

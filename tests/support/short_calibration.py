@@ -15,7 +15,7 @@ from model.bayes.drawing.weighted import importance_draws
 from model.bayes.estimate import thin_draws
 from model.bayes.fit import prepare_fit
 from model.bayes.posterior import LoadCell
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep

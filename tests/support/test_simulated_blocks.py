@@ -8,7 +8,7 @@ import pytest
 
 from model.bayes.likelihood import log_likelihood, predict_blocks
 from model.slip.definition import SlipDefinition, slip_per_radius_error
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from support.simulated_blocks import simulate_blocks, slip_of_true_radii
 from support.small_layouts import LAW, layout
 

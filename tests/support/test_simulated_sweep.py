@@ -6,7 +6,7 @@ import pytest
 
 from model.slip.definition import SlipDefinition
 from model.slip.magic_formula import MagicFormula
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import (
     TYPICAL_RIG,
     RigImperfections,

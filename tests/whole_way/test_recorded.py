@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.slip.thesis import THESIS_VALUES
+from model.slip.thesis_curve import THESIS_VALUES
 from support.bundled_walk import WALK
 from support.commands import COMMAND
 

@@ -14,7 +14,7 @@ from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, is_possible
 from model.slip.load_curves import LoadCurve, curves_by_load
 from model.slip.read_off import initial_slope
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from zebro_lab.calibration.coulomb_argument import COULOMB, coulomb_numbers
 from zebro_lab.calibration.slip_argument import THESIS
 from zebro_lab.files.errors import DataError, SettingsError

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from model.slip.definition import SlipDefinition
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from model.walk.slip import Slip
 from model.walk.traction import VelocityCoulomb
 from zebro_lab.calibration.coulomb_argument import coulomb_numbers

@@ -10,7 +10,7 @@ from benchmarks.speed.calibration_emcee import (
 )
 from model.bayes.fit import prepare_fit
 from model.bayes.likelihood import log_likelihood
-from model.slip.thesis import THESIS_LAW
+from model.slip.thesis_curve import THESIS_LAW
 from rig.slip_rig.sweep import SweepPlan
 
 SMALL = SweepPlan(slips=(0.02, 0.05, 0.1, 0.2, 0.4, 0.8), duration=0.4)

@@ -9,7 +9,7 @@ from benchmarks.speed.calibration_nuts import jax_log_density, largest_differenc
 from model.bayes.drawing.shear import Shear
 from model.bayes.fit import prepare_fit
 from model.slip.magic_formula import MagicFormula
-from model.slip.thesis import THESIS_LAW
+from model.slip.thesis_curve import THESIS_LAW
 from rig.slip_rig.sweep import SweepPlan
 
 jax = pytest.importorskip("jax", reason="the group bench is not installed")

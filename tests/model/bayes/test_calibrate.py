@@ -15,7 +15,7 @@ from model.bayes.calibrate import (
 )
 from model.bayes.posterior import LoadCell
 from model.errors import FitError
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.quick_fits import FEW

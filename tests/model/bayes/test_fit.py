@@ -13,7 +13,7 @@ from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.preliminary import BlockChoice
 from model.errors import DomainError, InsufficientData
 from model.slip import Brush, MagicFormula, SidedLaw
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep

@@ -12,7 +12,7 @@ from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.priors import HalfNormal, Normal
 from model.slip import Brush, CoulombStribeck, MagicFormula
 from model.slip.law import Parameter
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep

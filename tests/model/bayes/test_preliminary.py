@@ -19,7 +19,7 @@ from model.bayes.preliminary import (
 )
 from model.slip import SlipDefinition
 from model.slip.samples import SlipSamples
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep

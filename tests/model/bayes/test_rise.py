@@ -11,7 +11,7 @@ from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.rise import SLIPS, sampled_rise
 from model.slip import Brush, MagicFormula
 from model.slip.definition import SlipDefinition
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 
 LOADS = (5.0, 10.0)
 PEAKS = 0.0066 * np.array(LOADS)  # the law of the thesis: the peak's slip grows with load

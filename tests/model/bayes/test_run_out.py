@@ -7,7 +7,7 @@ import pytest
 from model.bayes.posterior import LoadCell
 from model.bayes.run_out import find_run_out, without_run_out
 from model.slip.rig_errors import RUN_OUT
-from model.slip.thesis import THESIS_LAW
+from model.slip.thesis_curve import THESIS_LAW
 from support.out_of_true import ERRORS, swept
 
 TRUE = RUN_OUT * np.array([1.0, 0, 1, 0, 1, 0, 1, 0])

@@ -24,7 +24,7 @@ from model.bayes.stated_priors import (
 from model.errors import DomainError
 from model.slip.rig_errors import RigErrors
 from model.slip.samples import SlipSamples
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep

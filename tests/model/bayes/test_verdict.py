@@ -24,7 +24,7 @@ from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import analyse_residuals
 from model.bayes.verdict import State, Verdict, judge
 from model.slip import Brush
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.judged_fits import (

@@ -8,7 +8,7 @@ from model.errors import DomainError
 from model.slip import Brush, magic_formula, read_off
 from model.slip.magic_formula import peak_slip
 from model.slip.read_off import initial_slope, shape_factor, stiffness_factor
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 
 THESIS_LOADS = (2.13, 6.63, 8.13, 12.75)  # N, Fig. 4-14
 FAR = np.geomspace(1e-4, 1e3, 4000)

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from model.robot import Robot
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from model.thesis.kinematics import Legs
 from model.thesis.loads import Balance
 from model.thesis.slip_ratio import along, find_slip, lateral_walk_slip, walk_slip

@@ -6,7 +6,7 @@ import pytest
 
 from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from model.thesis.legs import SwitchedLegs
 from model.thesis.step import contact_axes
 from model.thesis.traction import slip_traction

@@ -5,7 +5,7 @@ import pytest
 from model.errors import DefinitionMismatch
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES, thesis_curve
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES, thesis_curve
 from model.thesis.traction import slip_traction
 from model.walk.path import WalkPath
 from model.walk.slip import Slip

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
 from rig.experiment.condition import RigState
 from rig.experiment.sink import ExperimentWatcher, SinkFailed

@@ -3,7 +3,7 @@
 
 import pytest
 
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.device import iterate
 from rig.errors import LimitExceeded
 from rig.slip_rig.decode import decode_board, measured_slip

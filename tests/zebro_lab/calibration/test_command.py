@@ -13,7 +13,7 @@ import pytest
 from scipy.stats import chi2
 
 from model.slip.laws import LAWS
-from model.slip.thesis import THESIS_VALUES
+from model.slip.thesis_curve import THESIS_VALUES
 from support.calibrate_processes import FILES, SMALL_FIT, SMALLER_FIT, calibrate_slip, names
 from support.out_of_true import swept
 from support.quick_fits import fit_quickly

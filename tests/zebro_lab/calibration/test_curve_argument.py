@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.slip.definition import SlipDefinition, convert_slip
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES, thesis_curve
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES, thesis_curve
 from support.curve_tables import thesis_table, written_curve
 from support.rig_tables import speeds, write
 from zebro_lab.calibration.curve_argument import (

@@ -4,7 +4,7 @@ import pytest
 
 from model.bayes.likelihood import NUISANCE
 from model.bayes.priors import LogNormal, Normal, Truncated, Uniform
-from model.slip.thesis import THESIS_LAW
+from model.slip.thesis_curve import THESIS_LAW
 from zebro_lab.calibration.prior_argument import named_priors, parse_prior
 from zebro_lab.files.errors import SettingsError
 

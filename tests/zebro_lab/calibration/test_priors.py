@@ -10,7 +10,7 @@ import pytest
 from model.bayes.prior_conflict import PriorShift
 from model.bayes.stated_priors import StatedPriors
 from model.slip import MagicFormula
-from model.slip.thesis import THESIS_LAW
+from model.slip.thesis_curve import THESIS_LAW
 from support.compared_folders import calibration
 from support.rig_tables import RADII, columns, louder, speeds, write
 from support.short_calibration import short_calibration

@@ -22,7 +22,7 @@ def stated(curve):
 def test_a_rig_that_lost_friction_has_drifted(short, tmp_path, monkeypatch):
     from dataclasses import replace
 
-    from model.slip.thesis import thesis_curve
+    from model.slip.thesis_curve import thesis_curve
     from zebro_lab.experiment import check_stage as rig_check
 
     data = tmp_path / "data"
@@ -39,7 +39,7 @@ def test_a_rig_that_lost_friction_has_drifted(short, tmp_path, monkeypatch):
 
 
 def test_a_run_of_a_few_samples_is_not_testable_and_not_passed(tmp_path, monkeypatch):
-    from model.slip.thesis import thesis_curve
+    from model.slip.thesis_curve import thesis_curve
     from zebro_lab.experiment import check_stage as rig_check
 
     curve = thesis_curve()

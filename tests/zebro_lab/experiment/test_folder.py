@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.errors import RigError
 from rig.experiment.control import Control
 from rig.experiment.sink import SinkFailed

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from support.figure_extents import overhang
 from zebro_lab.plots.slip_law import THESIS_LOADS, slip_law
 

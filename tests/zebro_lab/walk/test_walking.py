@@ -7,7 +7,7 @@ import pytest
 from model.gait.steering import tripod_angles, tripod_reference
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
-from model.slip.thesis import thesis_curve
+from model.slip.thesis_curve import thesis_curve
 from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile

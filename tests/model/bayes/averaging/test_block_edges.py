@@ -9,7 +9,7 @@ from model.bayes.averaging.blocks import block_means
 from model.bayes.averaging.slip_noise import slip_noise_variance
 from model.slip import SlipDefinition
 from model.slip.samples import SlipSamples
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 
 NOISE = 0.002
 

@@ -9,7 +9,7 @@ import pytest
 from model.bayes.averaging.blocks import block_means
 from model.bayes.averaging.fast_wander import FastWander, fast_wander
 from model.bayes.checks.raw import raw_residuals
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep

@@ -7,7 +7,7 @@ import pytest
 from model.bayes.averaging.blocks import block_means
 from model.bayes.averaging.slip_noise import slip_noise_variance
 from model.slip.rig_errors import RUN_OUT, run_out_scatter
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep

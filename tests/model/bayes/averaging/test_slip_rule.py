@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.bayes.averaging.slip_rule import FAR, slip_rule
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 
 SD = 0.004
 

@@ -8,7 +8,7 @@ from scipy.stats import kstest
 from model.bayes.checks.linear import whiten
 from model.bayes.likelihood import NUISANCE, predict_blocks
 from model.slip.definition import slip_per_radius_error
-from model.slip.thesis import THESIS_LAW
+from model.slip.thesis_curve import THESIS_LAW
 from support.linearised_fits import linearised, with_force
 
 NAMES = [parameter.name for parameter in (*THESIS_LAW.parameters, *NUISANCE)]

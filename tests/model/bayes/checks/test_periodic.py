@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.bayes.checks.periodic import block_times, find_swing
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from support.linearised_fits import linearised, sound_sweep, with_force
 
 OMEGA = 12.0  # of the leg disc [rad/s]

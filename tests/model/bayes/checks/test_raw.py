@@ -16,7 +16,7 @@ from model.bayes.checks.raw import (
 )
 from model.slip.definition import SlipDefinition
 from model.slip.samples import SlipSamples
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from support.linearised_fits import linearised, sound_sweep, with_force
 
 RNG = np.random.default_rng(1)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from model.slip.magic_formula import magic_formula
-from model.slip.thesis import THESIS_VALUES
+from model.slip.thesis_curve import THESIS_VALUES
 from support.compared_folders import calibration
 from support.compared_folders import compared as differences_of
 from support.curve_tables import thesis_table, written_curve

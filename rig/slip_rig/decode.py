@@ -12,7 +12,7 @@ from model.arrays import Array
 from model.slip.definition import SlipDefinition, slip_ratio
 from rig.device import Sample
 from rig.errors import LimitExceeded, ProtocolError
-from rig.sample_columns import SampleColumns, as_columns
+from rig.sample_columns import as_columns
 from rig.slip_rig.profile import (
     BoardProfile,
     DiscDrive,
@@ -195,28 +195,13 @@ def decode_board(profile: BoardProfile, samples: Sequence[Sample]) -> tuple[Forc
         Forces and speeds at the same instants; the zero offset is not subtracted.
     """
     columns = as_columns(samples)
-    counts, time = _board_counts(profile, columns), columns.host_time
+    counts, time = columns.counts.reshape(-1, 4), columns.host_time
     newtons = counts[:, :2] / profile.counts_per_force
     speeds = counts[:, 2:4] / profile.counts_per_speed
     forces = Forces(
         time, profile.normal_sign * newtons[:, 0], profile.traction_sign * newtons[:, 1]
     )
     return forces, DiscSpeeds(time, speeds[:, 0], speeds[:, 1])
-
-
-def decode_further(profile: BoardProfile, samples: Sequence[Sample]) -> dict[str, Array]:
-    """Return what a table measured besides forces and speeds, by name, shape (n,) each, SI.
-
-    Args:
-        profile: Profile of the table; a board measures nothing else.
-        samples: Samples of the table.
-    """
-    counts = _board_counts(profile, as_columns(samples))
-    return {name: counts[:, 4 + i].astype(float) for i, name in enumerate(profile.further)}
-
-
-def _board_counts(profile: BoardProfile, columns: SampleColumns) -> Array:
-    return columns.counts.reshape(-1, 4 + len(profile.further))
 
 
 @dataclass(frozen=True)

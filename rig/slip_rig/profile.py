@@ -13,8 +13,6 @@ from rig.profile import open_profile, require_device
 
 BoardLink: TypeAlias = Literal["serial", "table"]
 AXES: Final = ("x", "y", "z")
-FURTHER: Final = ("lateral_force", "angle_leg", "angle_ground")
-"""What a table of a rig may have measured besides forces and speeds, SI."""
 HIGHEST_NODE: Final = 0x3F
 """Highest node of CANSimple: six bits."""
 FURTHER_LIMITS: Final = {"lateral_force": "N", "torque": "N m", "temperature_celsius": "degC"}
@@ -107,7 +105,6 @@ class BoardProfile:
         normal_sign: Factor that makes the normal force positive when pressed together, 1 or -1.
         traction_sign: Factor that makes the traction force positive when driving, 1 or -1.
         link: `serial`, or `table` for an imported file.
-        further: What a table measured besides, of `FURTHER`, in the order of its samples.
     """
 
     baudrate: int
@@ -119,7 +116,6 @@ class BoardProfile:
     normal_sign: int
     traction_sign: int
     link: BoardLink = "serial"
-    further: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -274,5 +270,4 @@ def _board(table: TomlTable) -> BoardProfile:
         counts_per_speed=table.positive("counts_per_speed"),
         normal_sign=table.sign("normal_sign"),
         traction_sign=table.sign("traction_sign"),
-        further=table.names("further", FURTHER) if is_table else (),
     )

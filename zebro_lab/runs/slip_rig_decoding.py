@@ -16,7 +16,6 @@ from rig.slip_rig.decode import (
     decode_board,
     decode_disc_angles,
     decode_forces,
-    decode_further,
     decode_further_loads,
     decode_speeds,
 )
@@ -49,7 +48,7 @@ def derive_table(
 
     Returns:
         The samples with strictly increasing time, and the note, if any. The lateral force, of which
-        no zero is known, is as measured; a board has none, and an imported table what it has.
+        no zero is known, is as measured; a board has none.
 
     Raises:
         DataError: A stream or a drive has no samples, no sample has speeds and forces, or the
@@ -79,8 +78,9 @@ def derive_table(
 
 def _of_board(profile: BoardProfile, board: SampleColumns) -> SlipRigTable:
     forces, speeds = decode_board(profile, board)
-    columns = (sample_times(board), speeds.leg, speeds.ground, forces.normal, forces.traction)
-    return SlipRigTable(*columns, **decode_further(profile, board))
+    return SlipRigTable(
+        sample_times(board), speeds.leg, speeds.ground, forces.normal, forces.traction
+    )
 
 
 def _of_two(

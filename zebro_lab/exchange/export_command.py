@@ -18,9 +18,8 @@ Out = Annotated[Path, typer.Option(metavar="PATH", help="New folder for the tabl
 @request_command()
 def export(run: RunFolder, out: Out, to: To = "csv", output: Output = TEXT) -> None:
     """Export a run as tables of its samples."""
-    from zebro_lab.exchange.export_stage import export_run, unended_notes
+    from zebro_lab.exchange.export_stage import export_run
 
-    files = list(export_run(run, to=to, out=out))
-    notes = list(unended_notes(run))
+    files, notes = export_run(run, to=to, out=out)
     output.say(*notes, *(f"wrote {file}" for file in files))
-    output.document("export", {"written": files, "notes": notes})
+    output.document("export", {"written": list(files), "notes": list(notes)})

@@ -14,7 +14,7 @@ from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError, show
 from zebro_lab.files.settings_table import fill_in
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE, read_slip_rig_run, run_state
-from zebro_lab.runs.manifest import RECORDING, read_manifest
+from zebro_lab.runs.manifest import RECORDING, RunManifest, read_manifest
 from zebro_lab.runs.recorded_walk import LEGS, read_recorded_legs
 from zebro_lab.tables.columns import COLUMNS_FILE
 
@@ -23,7 +23,7 @@ FORMATS: Final[tuple[Format, ...]] = ("csv", "parquet")
 Columns = Mapping[str, Any]
 
 
-def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
+def export_run(folder: Path, *, to: Format, out: Path) -> tuple[tuple[Path, ...], tuple[str, ...]]:
     """Write a run as tables: raw samples of each stream, and decoded values in SI.
 
     `legs` has the columns `t` and `theta1` to `theta6`, `slip_rig` those of a calibration, forces
@@ -37,7 +37,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
         out: Folder to create, whole or not at all.
 
     Returns:
-        The files written, the tables first.
+        The files written, the tables first; and a warning of a run that has not ended.
 
     Raises:
         NotFound: The folder is not a run folder, or its log or profile is missing.
@@ -53,7 +53,8 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
             "'parquet' needs pyarrow: pip install 'zebro-lab[parquet]', or --to csv", key="--to"
         )
     manifest = read_manifest(folder)
-    streams = read_raw_log(folder / LOG_FILE).streams
+    log = read_raw_log(folder / LOG_FILE)
+    streams = log.streams
     tables: dict[str, Columns] = {
         topic.strip("/").replace("/", "_"): _raw_columns(stream)
         for topic, stream in streams.items()
@@ -75,19 +76,13 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
         if to == "csv":
             _write_source(draft / COLUMNS_FILE, folder, manifest.source)
             names.append(COLUMNS_FILE)
-    return tuple(out / name for name in names)
+    return tuple(out / name for name in names), _unended(folder, manifest, log.end)
 
 
-def unended_notes(folder: Path) -> tuple[str, ...]:
-    """Return a warning of a run without an end: its state as in `runs`, and its last sample.
-
-    Raises:
-        NotFound, DataError: As in `export_run`.
-    """
-    manifest = read_manifest(folder)
+def _unended(folder: Path, manifest: RunManifest, end: float | None) -> tuple[str, ...]:
+    """Return a warning of a run without an end: its state as in `runs`, and its last sample."""
     if manifest.exit_status != RECORDING:
         return ()
-    end = read_raw_log(folder / LOG_FILE).end
     until = "" if end is None else f"; samples go up to {end:.3f} s"
     state = run_state(folder, manifest)
     return (f"WARNING: the run has not ended, state '{state}'{until}",)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import open_file, parsing
+from zebro_lab.files.opening import open_file, parsing, require_unpacked_size
 
 MOST_BYTES: Final = 256 << 20
 """Largest unpacked size of the arrays read: a band of 10,000 paths of one minute [bytes]."""
@@ -45,12 +45,7 @@ def read_arrays(
             raise DataError(
                 f"has no array '{missing}'; delete the file and compute the result again", file=path
             )
-        unpacked = sum(_size(archive, name) for name in wanted)
-        if unpacked > most:
-            raise DataError(
-                f"would unpack to {unpacked / 1e6:.0f} MB; expected at most {most / 1e6:.0f} MB",
-                file=path,
-            )
+        require_unpacked_size(path, sum(_size(archive, name) for name in wanted), most)
         return {name: archive[name] for name in wanted}
 
 

@@ -129,11 +129,27 @@ def read_unpacked(path: Path) -> bytes:
             raise DataError(
                 f"is not a complete gzip file ({error}); copy or export it again", file=path
             ) from error
-    if len(data) > MOST_UNPACKED:
-        raise DataError(
-            f"unpacks to more than {MOST_UNPACKED >> 20} MiB; unpack it, or split it", file=path
-        )
+    require_unpacked_size(path, len(data), MOST_UNPACKED)
     return data
+
+
+def require_unpacked_size(path: Path, size: int, most: int) -> None:
+    """Check the size to which a packed file unpacks.
+
+    Args:
+        path: The file.
+        size: Unpacked size, or a part of it that is beyond `most` [bytes].
+        most: Largest size that is accepted [bytes].
+
+    Raises:
+        DataError: It is larger.
+    """
+    if size > most:
+        raise DataError(
+            f"unpacks to {size / 1e6:.0f} MB or more; expected at most {most / 1e6:.0f} MB; unpack "
+            "it, or split it",
+            file=path,
+        )
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from typing import Any, Final
 import pandas as pd
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.opening import MOST_UNPACKED, parsing, read_unpacked
+from zebro_lab.files.opening import MOST_UNPACKED, parsing, read_unpacked, require_unpacked_size
 from zebro_lab.tables.cells import decimal_sign, kind_of
 from zebro_lab.tables.header_rows import Header, NoHeader, data_rows, find_header
 from zebro_lab.tables.raw_table import RawTable, differing_headers
@@ -172,12 +172,7 @@ def _require_bounded(path: Path, content: bytes) -> None:
                         file=path)  # fmt: skip
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         unpacked = sum(info.file_size for info in archive.infolist())
-    if unpacked > MOST_UNPACKED:
-        raise DataError(
-            f"would unpack to {unpacked / 1e6:.0f} MB; expected at most "
-            f"{MOST_UNPACKED / 1e6:.0f} MB; save it as CSV",
-            file=path,
-        )
+    require_unpacked_size(path, unpacked, MOST_UNPACKED)
 
 
 def _listed(names: Iterable[str]) -> str:

@@ -26,7 +26,7 @@ def recorded(tmp_path_factory):
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_tables_hold_what_stages_read(recorded, tmp_path, form):
-    files = export_run(recorded, to=form, out=tmp_path / "out")
+    files, _ = export_run(recorded, to=form, out=tmp_path / "out")
     names = {file.name.partition(".")[0] for file in files if file.suffix != ".toml"}
     assert names == {"legs", "slip_rig", "legs_raw", "drives_raw", "load_cell_raw"}
     rig = read_table_file(tmp_path / "out" / f"slip_rig.{form}")

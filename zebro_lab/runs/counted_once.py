@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Find duplicate data: files with the same content, or the same samples imported twice."""
 
-import gzip
 import hashlib
 import re
-import zlib
 from collections.abc import Callable, Hashable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Final, TypeVar
 
@@ -13,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import read_unpacked
 from zebro_lab.files.provenance import file_hash
 
 FEWEST: Final = 20
 """Fewest samples of a run whose forces identify it; fewer may be equal by chance."""
-_MOST: Final = 1 << 30  # bytes that are unpacked to be compared; a larger file is compared packed
-_CHUNK: Final = 1 << 20
 _SHOWN: Final = 3
 _COPY: Final = re.compile(r"\b(copy|kopie|copie|copia)\b|\(\d+\)$", re.IGNORECASE)
 _T = TypeVar("_T")
@@ -27,25 +26,12 @@ _T = TypeVar("_T")
 def content_hash(file: Path) -> str:
     """Compute the SHA-256 of a file, of the unpacked content for `.gz`.
 
-    A `.gz` that is damaged or unpacks to more than `_MOST` is hashed as it is.
+    A `.gz` that is damaged or too large for a table is hashed as it is: its reader reports it.
     """
     if file.name.lower().endswith(".gz"):
-        try:
-            return _unpacked_hash(file) or file_hash(file)
-        except (OSError, EOFError, zlib.error):  # a damaged file: its reader reports the error
-            return file_hash(file)
+        with suppress(DataError):
+            return hashlib.sha256(read_unpacked(file)).hexdigest()
     return file_hash(file)
-
-
-def _unpacked_hash(file: Path) -> str | None:
-    digest, read = hashlib.sha256(), 0
-    with gzip.open(file) as content:
-        while chunk := content.read(_CHUNK):
-            digest.update(chunk)
-            read += len(chunk)
-            if read > _MOST:
-                return None
-    return digest.hexdigest()
 
 
 def array_hash(*arrays: Array) -> str:

@@ -195,8 +195,7 @@ class KnownExposure:
         covariance = np.zeros((6, 6))
         covariance[np.ix_(HELD, HELD)] = self.prior.covariance
         level = BodyPose(self.level(pose), covariance)
-        slip = RASTER_SD * self.size[0]
-        return widened(Alignment(level, 0.0, 0.0), slip, lever=LEVER * self.size[0])
+        return widened(Alignment(level, 0.0, 0.0), RASTER_SD * self.size[0], RASTER_SD / LEVER)
 
     def on_photo(
         self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75
@@ -243,21 +242,28 @@ class KnownExposure:
         return (slice(low[1], high[1]), slice(low[0], high[0])), xy
 
 
-def position_sd(score: float, share: float) -> float:
+def disturbance_sd(score: float, share: float) -> float:
     """Compute the error of x and of y that other exposures and the floor cause, in robot lengths.
 
     Args:
         score: Correlation of the exposure's visible part with the template [-].
         share: Visible share of the top [-].
     """
-    part = max(share, _LEAST_SHARE)
     power = max(1 - score**2, 0.0) / score**2
-    return float(np.hypot(PASTED_SD * np.sqrt(power / part), STRIP_SD * (1 / part - 1) ** 2))
+    return float(PASTED_SD * np.sqrt(power / max(share, _LEAST_SHARE)))
 
 
-def widened(alignment: Alignment, slip: float, *, lever: float) -> Alignment:
-    """Add independent errors of standard deviation `slip` to x, y, and `slip / lever` to yaw."""
-    turn = slip / lever
-    added = np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2
+def strip_sd(share: float) -> float:
+    """Compute the error of x and of y of an exposure that shows a strip, in robot lengths.
+
+    Args:
+        share: Visible share of the top [-].
+    """
+    return STRIP_SD * (1 / max(share, _LEAST_SHARE) - 1) ** 2
+
+
+def widened(alignment: Alignment, position: float, turn: float) -> Alignment:
+    """Add independent errors to x and y, and to yaw, by their standard deviations [m, rad]."""
+    added = np.diag([position, position, 0.0, 0.0, 0.0, turn]) ** 2
     pose = replace(alignment.pose, covariance=alignment.pose.covariance + added)
     return replace(alignment, pose=pose)

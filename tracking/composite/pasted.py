@@ -24,7 +24,7 @@ from model.arrays import Array
 from tracking.body.search import match_whole
 from tracking.body.template import sample
 from tracking.composite.colours import NOISE, FloorColours, colour_density, robot_density
-from tracking.composite.known import LEAST_SCORE, Exposure, position_sd, widened
+from tracking.composite.known import LEAST_SCORE, Exposure, disturbance_sd, strip_sd, widened
 from tracking.composite.reading import BodyRaster, Reading
 from tracking.composite.steps import (
     CLIMB,
@@ -132,8 +132,9 @@ class PastedReading(Reading):
             if alignment is None:
                 alignment = known.rough(pose)
             else:
-                slip = position_sd(alignment.score, share) * self.length
-                alignment = widened(alignment, slip, lever=_STRIP_LEVER * self.length)
+                disturbed = disturbance_sd(alignment.score, share)
+                placed = float(np.hypot(disturbed, strip_sd(share)))
+                alignment = widened(alignment, placed * self.length, disturbed / _STRIP_LEVER)
             found.append(Exposure(alignment, share))
             visible = visible & ~self.likelier[0].hidden_pixels(alignment.pose)
         return tuple(found)

@@ -32,7 +32,7 @@ def path_band(paths: Poses, *, title: str, ground: Ground = FLAT) -> Figure:
     """
     names = ("x [m]", "y [m]", "yaw [deg]")
     figure, above, panels = sheet.map_and_panels(title, simulated=True, height=5.6, names=names)
-    sheet.draw_band(above, paths, label="draws", color=sheet.BLUE, lw=0.6, alpha=0.2)
+    sheet.draw_band(above, paths, label="draws", lw=0.6, alpha=0.2)
     bands = quantiles(paths, _LEVELS) * [1.0, 1.0, 180 / np.pi]
     above.plot(*bands[2, :, :2].T, color="black", lw=1.2)
     if not is_level(ground):
@@ -92,9 +92,7 @@ def path_validation(
         f"{of}: {title}", simulated=simulated, height=5.8,
         names=(f"ahead [{unit}]", f"to the left [{unit}]", "yaw [deg]"),
     )  # fmt: skip
-    sheet.draw_band(
-        above, band, label="draws of the prediction", color=sheet.BLUE, lw=0.5, alpha=0.15
-    )
+    sheet.draw_band(above, band, label="draws of the prediction", lw=0.5, alpha=0.15)
     dots = {"marker": ".", "ms": 3} if len(track) <= _MOST_DOTS else {}
     for (name, path), colour in zip(moving.items(), sheet.CYCLE, strict=False):
         above.plot(*path.position.T, color=colour, lw=1.2, label=name)

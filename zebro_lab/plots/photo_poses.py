@@ -136,7 +136,7 @@ def band_over_floor(
         f"Predicted and tracked path: {title} ({kind})", floor, extent, simulated=False,
         note=f"photograph at {photo_at:.1f} s; raised objects are displaced",
     )  # fmt: skip
-    sheet.draw_band(axes, band, label="draws", color=sheet.BLUE, lw=0.5, alpha=0.25)
+    sheet.draw_band(axes, band, label="draws", lw=0.5, alpha=0.25)
     axes.plot(*path.position.T, color=sheet.BLUE, lw=1.6, label="predicted path")
     axes.plot(
         *track.position.T, ls="none", marker="o", ms=4.5, color="black", mec="white", mew=0.6,

@@ -28,6 +28,7 @@ from zebro_lab.files.single_file import picture_metadata
 from zebro_lab.files.units import unit_symbol
 
 BLUE, RED, GREEN, PALE_BLUE = "#0072B2", "#D55E00", "#009E73", "#56B4E9"
+BAND = BLUE  # of bands of uncertainty: paths, slip curves
 CYCLE = (BLUE, "#E69F00", GREEN, RED, "#CC79A7", PALE_BLUE, "#000000", "#999999")
 _SHOWN_DRAWS = 60
 _TIME_MARGIN = 0.01  # of the time shown
@@ -236,12 +237,12 @@ def photograph_axes(
 
 
 def tint(share: float) -> str:
-    """Return blue mixed with white, the share of blue from 0 to 1; opaque, so keys look like it.
+    """Return the colour of bands mixed with white, its share from 0 to 1; opaque, as in legends.
 
-    >>> tint(0.0), tint(1.0) == BLUE.lower()
+    >>> tint(0.0), tint(1.0) == BAND.lower()
     ('#ffffff', True)
     """
-    red, green, blue = (1 - share * (1 - each) for each in to_rgb(BLUE))
+    red, green, blue = (1 - share * (1 - each) for each in to_rgb(BAND))
     return to_hex((red, green, blue))
 
 
@@ -252,10 +253,10 @@ def draw_band(axes: Axes, band: Poses | None, *, label: str | None = None, **sty
         axes: Axes of the map.
         band: Draws of the path; None without draws.
         label: Label of all lines together in a legend; None for no label.
-        style: Line style, as keyword arguments of `Axes.plot`.
+        style: Line style, as keyword arguments of `Axes.plot`, but the colour.
     """
     for i, position in enumerate(() if band is None else band.position[:_SHOWN_DRAWS]):
-        axes.plot(*position.T, label=None if i else label, **style)
+        axes.plot(*position.T, label=None if i else label, color=BAND, **style)
 
 
 TRACTION_LABEL = "traction force [N]"

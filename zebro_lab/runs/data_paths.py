@@ -75,7 +75,7 @@ def columns_above_roots(sources: Sequence[DataSource], named: Path | None) -> tu
 def find_sources(paths: Sequence[Path]) -> list[DataSource]:
     """Find table files and run folders recursively; a path reached twice is listed once.
 
-    A folder that is no run folder stands for every CSV and Parquet file and every run folder below
+    A folder that is no run folder stands for every table and every run folder below
     it, sorted by name. Links are followed; hidden files and folders, results of commands, such as
     calibration folders, and all that is inside run folders, are skipped.
 

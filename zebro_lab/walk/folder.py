@@ -90,7 +90,9 @@ _COLUMNS_OF: Final = {
 _COMPUTED: Final = {"slip_velocity", "normal_force", "traction_force", "slip_ratio", "body_force",
                     "energy"}  # fmt: skip
 """Attributes that not every model computes: their cells may be empty."""
-_LATER: Final = {"body_force", "in_flight", "energy"}
+_DERIVED: Final = {"in_flight"}
+"""Attributes that follow from the others, and are not read back."""
+_LATER: Final = {"body_force", "energy"}
 """Attributes that folders of earlier versions lack."""
 COLUMNS = tuple(name for columns in _COLUMNS_OF.values() for name in columns)
 """The columns of `path.csv`, in order."""
@@ -185,7 +187,7 @@ def read_walk(path: Path) -> WalkPath:
     if not file.exists():
         raise NotFound(f"{file}: no such file; choose a folder that walk or predict wrote")
     table = read_table_file(file)
-    read = {name: _read(table, name) for name in _COLUMNS_OF if name != "in_flight"}
+    read = {name: _read(table, name) for name in _COLUMNS_OF if name not in _DERIVED}
     table.require_increasing("t", read["t"])
     for name in ("slip_velocity", "traction_force"):
         read[name] = read[name].reshape(-1, 2, N_LEGS).swapaxes(1, 2)

@@ -101,7 +101,10 @@ _PART_SIDES = _correct(
     "weigh the load cell in both directions; if its gain is the same, fit driving and braking "
     "apart: the same command with --sides apart"
 )
-_FREE_LOAD = _correct("give the same command with --load-sensitivity")
+_FREE_LOAD = _correct(
+    "give the same command with --load-sensitivity; for another law than the Magic Formula with "
+    "--law compare"
+)
 _MEASURE_AGAIN = _correct(
     "clean both discs, let them warm up, and measure again with the loads in another order; "
     "fit the new runs alone"

@@ -7,7 +7,7 @@ import numpy as np
 
 from support.drawn_board import LENS, PRIOR, SIZE, TOP, VIEW, composite, likeness
 from tracking.camera import project
-from tracking.composite.known import position_sd
+from tracking.composite.known import disturbance_sd, strip_sd
 
 
 def test_something_that_lies_on_a_robot_does_not_draw_it_where_odd_points_are_left_out():
@@ -41,8 +41,12 @@ def test_the_pixels_around_an_exposure_show_its_plane():
 
 
 def test_an_exposure_is_less_sure_the_less_of_it_is_seen_and_the_less_it_is_alike():
-    sd = [position_sd(0.99, share) for share in (1.0, 0.5, 0.25, 0.1, 0.05, 0.0)]
-    assert sd == sorted(sd)
-    assert sd[-2] == sd[-1] < 0.06
-    assert position_sd(1.0, 1.0) == 0.0
-    assert position_sd(0.8, 1.0) > 3 * position_sd(0.98, 1.0)
+    shares = (1.0, 0.5, 0.25, 0.1, 0.05, 0.0)
+    for sd in (
+        [disturbance_sd(0.99, each) for each in shares],
+        [strip_sd(each) for each in shares],
+    ):
+        assert sd == sorted(sd)
+        assert sd[-2] == sd[-1] < 0.06
+    assert disturbance_sd(1.0, 1.0) == strip_sd(1.0) == 0.0
+    assert disturbance_sd(0.8, 1.0) > 3 * disturbance_sd(0.98, 1.0)

@@ -76,12 +76,17 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
             f"is a run of kind '{manifest.kind}', expected '{RIG_KIND}'; do not give this run",
             file=folder / MANIFEST_FILE,
         )
+    if not manifest.profiles:
+        raise DataError(
+            "is of an earlier version without profiles; export it with that version",
+            file=folder / MANIFEST_FILE,
+        )
     path = folder / LOG_FILE
     if not path.is_file():
         raise NotFound(f"{path}: missing; copy it from the computer where the run was recorded")
     raw = read_raw_log(path)
     table, notes = derive_table(folder, raw.streams, zero=manifest.constants)
-    _require_radii(manifest, folder / MANIFEST_FILE)
+    _require_constants(manifest, folder / MANIFEST_FILE)
     if raw.damage is not None:
         notes = (_salvage_note(folder, manifest, len(table), raw.damage), *notes)
     else:
@@ -178,7 +183,11 @@ def require_ended(folder: Path) -> None:
         raise RecordingError(f"{folder} is being recorded; wait until it has ended")
 
 
-def _require_radii(manifest: RunManifest, file: Path) -> None:
+def _require_constants(manifest: RunManifest, file: Path) -> None:
+    for name in ("zero_normal", "zero_traction"):
+        if not np.isfinite(manifest.constants.get(name, 0.0)):
+            raise DataError(f"is unknown; enter the zero in N (constants.{name})", file=file,
+                            column=name)  # fmt: skip
     for name in ("radius_leg", "radius_ground"):
         radius = manifest.constants.get(name, np.nan)
         if not (np.isfinite(radius) and radius > 0):

@@ -2,9 +2,10 @@
 """Read, check and write the manifest `run.json` of a run folder."""
 
 import json
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from datetime import datetime
+from dataclasses import asdict, dataclass, field, fields
+from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, TypeAlias
@@ -57,9 +58,14 @@ def software_version() -> dict[str, str]:
 
 
 def _moment(text: str) -> str:
-    """Return a date and time in ISO 8601; ValueError without a time zone."""
-    if datetime.fromisoformat(text).tzinfo is None:
-        raise ValueError("expected a time zone, such as 2026-01-01T12:00:00+00:00")
+    """Return a date and time in ISO 8601; ValueError without a time zone, or outside the years."""
+    moment = datetime.fromisoformat(text)
+    try:
+        moment.astimezone(UTC)
+    except OverflowError as error:
+        raise ValueError("is no time in UTC") from error
+    if moment.tzinfo is None:
+        raise ValueError("lacks a time zone")
     return text
 
 
@@ -84,7 +90,7 @@ class RunManifest:
         software: Version and commit of the recording software, by "version" and "commit".
         constants: Canonical columns that are one number for the rig, SI: radius_leg,
             radius_ground; also zero_normal and zero_traction [N], where the unloaded load cell's
-            zero is to be subtracted.
+            zero is to be subtracted. NaN is unknown, and null in the file.
         streams: Number of samples recorded, by topic; empty before the end.
         log_sha256: SHA-256 of `log.mcap`; None before the end, or if the recorder could not close
             the log.
@@ -92,7 +98,7 @@ class RunManifest:
         exclusions: Exclusions and their undoing, in order: {"did": "excluded" or "undone", "why":
             reason, "at": time}.
         profiles: Name of each device's profile, by its file in the folder (`profile_file`); empty
-            in runs of an early version, whose log has samples in SI.
+            in runs of an early version, whose log has samples in SI: they are listed, not read.
         sources: Source of each stream, by the stream's name.
         counters: Numbers of samples received, lost, damaged and so on, and of those that the
             recorder dropped, by stream.
@@ -204,6 +210,16 @@ _OPTIONAL = {
     "stop", "log_sha256", "excluded", "exclusions", "profiles", "sources", "counters", "clocks",
     "duration", "robot", "truth", "inputs", "point", "seed",
 }  # fmt: skip
+_REQUIRED = tuple(each.name for each in fields(RunManifest) if each.name not in _OPTIONAL)
+_EXPECTED: Final = {
+    "string_type": "a text",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "dict_type": "an object",
+    "list_type": "a list",
+    "value_error": "a date and time with a time zone, such as 2026-01-01T12:00:00+00:00",
+}
+"""What an entry should be, by pydantic's type of the error."""
 _CHECK: Final = TypeAdapter(RunManifest)
 
 
@@ -215,13 +231,23 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
             file=file,
         )
     try:
-        manifest = _CHECK.validate_json(json.dumps(_without_unknown(document)))
+        entries = dict.fromkeys(_REQUIRED) | _without_unknown(document)
+        if isinstance(document.get("constants"), dict):  # an unknown one must not count as 0
+            entries["constants"] = {
+                key: math.nan if each is None else each
+                for key, each in document["constants"].items()
+            }
+        manifest = _CHECK.validate_json(json.dumps(entries))
     except ValidationError as error:
         found = error.errors()[0]
-        named = "".join(
-            f"'{name}' is {in_json(document, str(name))}: " for name in found["loc"][:1]
-        )
-        raise DataError(f"{named}{found['msg']}", file=file) from error
+        if not found["loc"]:  # half of a pair of surrogates
+            raise DataError(f"is not read: {found['msg']}", file=file) from error
+        name, *inner = map(str, found["loc"])
+        what = f"is {in_json(document, name)}"
+        if inner:
+            what = f"has '{'.'.join(inner)}': {found['input']!r}"
+        expected = _EXPECTED.get(found["type"], found["msg"])
+        raise DataError(f"'{name}' {what}, expected {expected}", file=file) from error
     if manifest.kind not in KINDS:
         raise DataError(f"'kind' is '{manifest.kind}'; {nearest(manifest.kind, KINDS)}", file=file)
     for each in manifest.exclusions:
@@ -230,15 +256,11 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
     return manifest
 
 
-def _without_unknown(document: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entries without nulls in tables and in what is optional: of unknown numbers."""
-    return {
-        name: {key: each for key, each in value.items() if each is not None}
-        if isinstance(value, dict)
-        else value
-        for name, value in document.items()
-        if value is not None or name not in _OPTIONAL
-    }
+def _without_unknown(value: Any) -> Any:
+    """Return a value without the nulls in its tables: of unknown numbers."""
+    if isinstance(value, dict):
+        return {key: _without_unknown(each) for key, each in value.items() if each is not None}
+    return [_without_unknown(each) for each in value] if isinstance(value, list) else value
 
 
 def in_json(document: Mapping[str, Any], name: str) -> str:

@@ -39,6 +39,16 @@ def test_manifest_tells_what_was_recorded(tmp_path):
     assert datetime.fromisoformat(manifest.stop) - START == timedelta(seconds=0.199)
 
 
+def test_a_run_of_a_version_without_profiles_and_an_unknown_zero_are_refused(tmp_path):
+    folder = make_run(tmp_path)
+    edit(folder, constants={"radius_leg": 0.03, "radius_ground": 0.1, "zero_normal": None})
+    with pytest.raises(DataError, match=r"is unknown; .*constants\.zero_normal"):
+        read_slip_rig_run(folder)
+    edit(folder, profiles=...)
+    with pytest.raises(DataError, match=r"run\.json: is of an earlier version without profiles"):
+        read_slip_rig_run(folder)
+
+
 def test_start_in_any_zone_names_the_folder_in_utc(tmp_path):
     local = START.astimezone(timezone(timedelta(hours=2)))
     assert make_run(tmp_path, start=local).name.startswith("20260304T050607Z")

@@ -5,7 +5,8 @@
 |---|---|---|
 | the user's files are linked into the draft | NAME old | NAME is old |
 | NAME becomes `.NAME.previous` | only the old one | the next reader or writer restores it |
-| the draft becomes NAME | both | NAME is new; the next writer removes the old |
+| files that the user wrote meanwhile are linked | only the old one | likewise |
+| the draft becomes NAME | both | NAME is new; the next reader or writer removes the old |
 | the old one is removed | NAME new | NAME is new |
 
 NAME is the folder. The file `.NAME.replacing` is locked meanwhile, so that no other process
@@ -55,15 +56,15 @@ def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[
         if folder.exists():
             _carry(folder, draft, names)
             draft.chmod(folder.stat().st_mode & 0o7777)
-        _sync(draft)
         with uninterrupted():
-            _swap(folder, draft)
+            _swap(folder, draft, names)
             shutil.rmtree(previous_of(folder), ignore_errors=True)  # else the next one tries again
 
 
 def recover(path: Path) -> Path:
     """Restore a result folder after a killed replacement that left only `.NAME.previous`.
 
+    Where NAME exists, it is complete: what is left of `.NAME.previous` is removed, if possible.
     Every reader and writer of a result calls this function first.
 
     Args:
@@ -74,18 +75,20 @@ def recover(path: Path) -> Path:
 
     Raises:
         DataError: NAME does not exist, and `.NAME.previous` cannot be renamed to it.
-        AlreadyExists: Another process still replaces the folder after `PATIENCE`.
+        AlreadyExists: NAME does not exist, and another process still replaces it after `PATIENCE`.
     """
     absolute = Path(os.path.realpath(path))
     for folder in (absolute, absolute.parent):
-        if not folder.name or folder.exists() or not previous_of(folder).is_dir():
+        if not folder.name or not previous_of(folder).is_dir():
             continue
         try:
             with _locked(folder):
                 _recover_locked(folder)
-        except AlreadyExists:
-            raise
         except OSError as error:
+            if folder.exists():
+                continue
+            if isinstance(error, AlreadyExists):
+                raise
             raise DataError(
                 f"is missing: a replacement was interrupted, and {previous_of(folder).name} cannot "
                 f"be renamed back ({error.strerror}); rename it to {folder.name} by hand",
@@ -100,7 +103,7 @@ def _recover_locked(folder: Path) -> None:
     if not previous.is_dir():
         return
     if folder.exists():
-        shutil.rmtree(previous)
+        shutil.rmtree(previous, ignore_errors=True)
         return
     previous.rename(folder)
     sync_folder(folder.parent)
@@ -109,11 +112,14 @@ def _recover_locked(folder: Path) -> None:
     )
 
 
-def _swap(folder: Path, draft: Path) -> None:
+def _swap(folder: Path, draft: Path, owned: Collection[str]) -> None:
     previous = previous_of(folder)
     if folder.exists():
         folder.rename(previous)
     try:
+        if previous.exists():
+            _carry(previous, draft, owned)
+        _sync(draft)
         draft.rename(folder)
     except OSError:
         if previous.exists():
@@ -126,8 +132,8 @@ def _carry(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> No
     """Hard-link the user's files, names not in `owned`, from the old folder into the new one.
 
     Files are copied where the file system, or their owner, forbids links. A file that the new
-    folder has already stays as it is there. `prefix` is the path of `old` relative to the folder
-    that is replaced, with a final `/`; names in `owned` begin with it.
+    folder has already stays as it is there unless it is older. `prefix` is the path of `old`
+    relative to the folder that is replaced, with a final `/`; names in `owned` begin with it.
     """
     for path in sorted(old.iterdir()):
         name, target = prefix + path.name, new / path.name
@@ -149,12 +155,17 @@ def _is_folder(path: Path) -> bool:
 
 
 def _link(file: Path, target: Path) -> None:
+    if os.path.lexists(target):
+        if target.lstat().st_mtime_ns >= file.lstat().st_mtime_ns:
+            return
+        target.unlink()
     try:
         os.link(file, target, follow_symlinks=False)
-    except FileExistsError:
-        return
     except OSError:
         shutil.copy2(file, target, follow_symlinks=False)
+        if not target.is_symlink():
+            with target.open("rb") as copied:
+                os.fsync(copied.fileno())
 
 
 @contextmanager

@@ -21,7 +21,7 @@ from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.folder_manifest import MANIFEST, listed_outputs, read_json_object
 from zebro_lab.files.provenance import file_hash, software, software_commit
-from zebro_lab.files.replacement import recover, replace_folder
+from zebro_lab.files.replacement import previous_of, recover, replace_folder
 
 _GLOB: Final = "*"
 
@@ -61,14 +61,19 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
         AlreadyExists: `out` is a file or below one, a broken link or behind one, the working folder
             or above it, or the result of another command; its manifest cannot be read; a file that
             the manifest lists was changed; a file to be written exists and is not listed;
-            `out` is an input, or has one among the files to be replaced; or
-            another process is replacing it.
+            `.out.previous` cannot be removed; `out` is an input, or has one among the files to be
+            replaced; or another process is replacing it.
         NotWritten: The nearest existing parent folder, or the folder itself, cannot be written to.
         DataError: A replacement was interrupted, and what is left of it cannot be renamed.
     """
     software_commit()  # of the code that computes, not of what is committed meanwhile
     folder = real_place(out)
     recover(folder)
+    if os.path.lexists(previous_of(folder)):
+        raise AlreadyExists(
+            f"{previous_of(folder)}, which an interrupted replacement of {out} left, cannot be "
+            "removed; remove it, or choose another folder with --out"
+        )
     _require_ground(out)
     if os.path.lexists(folder) and not folder.is_dir():
         raise AlreadyExists(f"{out} is a file; give the name of a folder as --out")

@@ -13,7 +13,8 @@ import pytest
 from support.written_tracks import content, write_track
 from zebro_lab.files import replacement
 from zebro_lab.files.errors import ZebroLabError
-from zebro_lab.track.folder import read_track_manifest
+from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.track.folder import TRACKED, read_track_manifest
 
 
 class Killed(BaseException):
@@ -81,6 +82,8 @@ def test_a_kill_at_any_change_leaves_the_old_or_the_new_result_whole(tmp_path, k
         found = content(out if out.exists() else previous)
         assert found.pop("notes.txt") == b"mine"
         assert found in (content(old), content(new)), f"killed after {changes} changes"
+        read_track_manifest(out)
+        assert not previous.exists()
         if finished:
             break
     assert finished
@@ -140,10 +143,44 @@ def test_foreign_files_are_kept_where_no_hard_links_are(tmp_path, monkeypatch):
     (out / "mine").mkdir()
     for name in ("notes.txt", "mine/a.txt"):
         (out / name).write_text("mine")
+    flushed, fsync = [], os.fsync
     monkeypatch.setattr(os, "link", refuse)
+    monkeypatch.setattr(os, "fsync", lambda fd: (flushed.append(os.fstat(fd).st_ino), fsync(fd)))
     write_track(out, 1.0)
-    assert (out / "notes.txt").read_text() == (out / "mine" / "a.txt").read_text() == "mine"
+    for file in (out / "notes.txt", out / "mine" / "a.txt"):
+        assert file.read_text() == "mine"
+        assert file.stat().st_ino in flushed
     assert not (tmp_path / ".track.previous").exists()
+
+
+def test_what_the_user_saves_during_a_replacement_is_kept(tmp_path, monkeypatch):
+    def save_and_swap(folder: Path, *arguments: object) -> None:
+        (folder / "late.txt").write_text("late")
+        (folder / "draft").write_text("edited")
+        (folder / "draft").replace(folder / "notes.txt")
+        swap(folder, *arguments)
+
+    out, swap = tmp_path / "track", replacement._swap
+    write_track(out, 0.0)
+    (out / "notes.txt").write_text("mine")
+    monkeypatch.setattr(replacement, "_swap", save_and_swap)
+    write_track(out, 1.0)
+    assert (out / "late.txt").read_text() == "late"
+    assert (out / "notes.txt").read_text() == "edited"
+    assert read_track_manifest(out)["settings"] == {"x": 1.0}
+
+
+def test_an_old_folder_that_cannot_be_removed_is_named_before_anything_is_computed(
+    tmp_path, monkeypatch
+):
+    out, previous = tmp_path / "track", tmp_path / ".track.previous"
+    write_track(out, 0.0)
+    write_track(previous, 1.0)
+    monkeypatch.setattr(replacement.shutil, "rmtree", lambda *_, **__: None)
+    assert read_track_manifest(out)["settings"] == {"x": 0.0}
+    with pytest.raises(ZebroLabError, match=r"\.track\.previous, .* cannot be removed"):
+        require_replaceable(out, TRACKED)
+    assert read_track_manifest(out)["settings"] == {"x": 0.0}
 
 
 def test_a_waiting_writer_gives_up_with_one_line(tmp_path, monkeypatch):

@@ -23,8 +23,8 @@ def parse_toml(data: bytes) -> dict[str, Any]:
         data: Content of a file, in UTF-8 with or without a byte order mark.
 
     Raises:
-        ValueError: The content is larger, not UTF-8, not TOML, or nested too deeply; the message
-            does not name the file.
+        ValueError: The content is larger, not UTF-8, not TOML, nested too deeply, or has a whole
+            number of more than 64 bits; the message does not name the file.
 
     >>> parse_toml(b"mass = 2.17")
     {'mass': 2.17}
@@ -32,9 +32,21 @@ def parse_toml(data: bytes) -> dict[str, Any]:
     if len(data) > MOST_BYTES:
         raise ValueError(f"holds more than {MOST_BYTES >> 20} MiB, the most that is read")
     try:
-        return tomllib.loads(data.decode("utf-8-sig"))
+        entries = tomllib.loads(data.decode("utf-8-sig"))
+        _require_64_bits(entries)
     except RecursionError as error:
         raise ValueError("is nested too deeply") from error
+    return entries
+
+
+def _require_64_bits(value: object, key: str = "") -> None:
+    if isinstance(value, int) and value.bit_length() > 64:  # TOML has no larger ones
+        raise ValueError(f"{key} is a whole number of more than 64 bits; expected a smaller one")
+    items = value.items() if isinstance(value, dict) else ()
+    if isinstance(value, list):
+        items = ((key, each) for each in value)
+    for name, each in items:
+        _require_64_bits(each, name)
 
 
 class TomlTable:

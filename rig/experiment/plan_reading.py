@@ -82,8 +82,11 @@ def _points(table: TomlTable) -> PointGrid:
 
 
 def _load(table: TomlTable) -> LoadSetting:
+    set_by = table.text("set_by")
+    if set_by != "hand":
+        raise table.fault(f'found {set_by!r}; set the load by hand: set_by = "hand"', "set_by")
     return LoadSetting(
-        set_by=table.choice("set_by", ("hand",)),
+        set_by="hand",
         tolerance=table.positive("tolerance"),
         patience=table.positive("patience", 30.0),
     )

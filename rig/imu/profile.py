@@ -75,9 +75,10 @@ class ImuProfile:
         return struct.Struct(order + "".join(TYPES[kind] for _, kind in self.record))
 
     @property
-    def has_fractions(self) -> bool:
-        """Whether counts may have fractions: of a table, or of a record with floats."""
-        return self.layout == "table" or "float32" in dict(self.record).values()
+    def needs_doubles(self) -> bool:
+        """Whether counts may not fit into int32: of a table, or a record with such types."""
+        kinds = {kind for _, kind in self.record}
+        return self.layout == "table" or not kinds.isdisjoint({"float32", "uint32"})
 
     def columns(self, names: Sequence[str]) -> list[int]:
         """Return the places of counts in a record; empty if the record lacks one of them."""

@@ -132,6 +132,7 @@ def test_a_byte_order_mark_is_no_fault():
         (b"a = " + b"[" * 20_000 + b"]" * 20_000, "nested too deeply"),
         (b"\xff", "utf-8"),
         (b"a =", "Invalid value"),
+        (b"[legs]\nradius = [1, 0x" + b"f" * 6000 + b"]", "radius is .* more than 64 bits"),
     ],
 )
 def test_what_cannot_be_parsed_is_a_value_error(data, said):

@@ -32,7 +32,8 @@ def read_arrays(
     Raises:
         NotFound: There is no such file.
         DataError: The file is not regular, cannot be opened, is not an archive, lacks an array, or
-            has a damaged one or one of objects; or the arrays unpack to more than `most`.
+            has a damaged one or one that is not of numbers, truth values or texts; or the arrays
+            unpack to more than `most`.
     """
     wanted = list(names)
     with (
@@ -46,7 +47,11 @@ def read_arrays(
                 f"has no array '{missing}'; delete the file and compute the result again", file=path
             )
         require_unpacked_size(path, sum(_size(archive, name) for name in wanted), most)
-        return {name: archive[name] for name in wanted}
+        arrays = {name: archive[name] for name in wanted}
+    for name, array in arrays.items():
+        if not isinstance(array, np.ndarray) or array.dtype.kind not in "biufU":
+            raise DataError(f"holds no array of numbers as '{name}'; {advice}", file=path)
+    return arrays
 
 
 def _size(archive: Any, name: str) -> int:

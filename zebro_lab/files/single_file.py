@@ -2,7 +2,7 @@
 """Overwrite a single output file only if the same command wrote it."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -26,11 +26,12 @@ class SingleFile:
 
     Attributes:
         command: The command, as shown in messages.
-        marks: Bytes of which the first or last 64 KiB of every such file contain one.
+        marks: By the bytes that such a file begins with, those that its first or last 64 KiB
+            contain.
     """
 
     command: str
-    marks: tuple[bytes, ...]
+    marks: Mapping[bytes, bytes]
 
 
 def picture(command: str) -> SingleFile:
@@ -39,7 +40,8 @@ def picture(command: str) -> SingleFile:
     content = f"{COMMENT}\0{command}".encode("latin-1")
     png = len(content).to_bytes(4, "big") + b"tEXt" + content
     svg, pdf = f"<dc:description>{drawn}</dc:description>", f"/Subject ({drawn})"
-    return SingleFile(command, (png, svg.encode(), pdf.encode()))
+    marks = {b"\x89PNG\r\n\x1a\n": png, b"<?xml": svg.encode(), b"%PDF-": pdf.encode()}
+    return SingleFile(command, marks)
 
 
 def picture_metadata(form: PictureFormat, command: str | None) -> dict[str, str | None]:
@@ -93,7 +95,10 @@ def _require_ours(out: Path, file: Path, kind: SingleFile) -> None:
         head = opened.read(_SEARCHED)
         opened.seek(max(file.stat().st_size - _SEARCHED, 0))
         tail = opened.read(_SEARCHED)
-    is_ours = any(mark in head or mark in tail for mark in kind.marks)
+    is_ours = any(
+        head.startswith(begin) and (mark in head or mark in tail)
+        for begin, mark in kind.marks.items()
+    )
     if head and not is_ours:  # an empty file may be overwritten
         raise AlreadyExists(
             f"{out} was not made by {kind.command}; move it away, or choose another --out"

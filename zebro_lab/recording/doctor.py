@@ -6,7 +6,7 @@ import platform
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from importlib.metadata import distributions, requires, version
+from importlib.metadata import PackageNotFoundError, distributions, requires, version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final, Literal
@@ -41,9 +41,16 @@ def examine(data: Path) -> Iterator[Finding]:
     Args:
         data: Folder for recordings; need not exist.
     """
-    used = f"{version('zebro-lab')} from {Path(__file__).parents[2]}"
-    yield Finding("ok", "zebro-lab", f"{used}, Python {platform.python_version()}")
-    yield from check_requirements(requires("zebro-lab") or ())
+    place = Path(__file__).parents[2]
+    try:
+        used, needed = version("zebro-lab"), requires("zebro-lab") or ()
+    except PackageNotFoundError:
+        text = f"in {place} is not installed; run `pip install -e {place}`"
+        yield Finding("BROKEN", "zebro-lab", text)
+    else:
+        text = f"{used} from {place}, Python {platform.python_version()}"
+        yield Finding("ok", "zebro-lab", text)
+        yield from check_requirements(needed)
     yield from check_shadows()
     yield from check_serial_ports()
     yield from check_can(Path("/sys/class/net"))

@@ -98,10 +98,17 @@ class StreamWatch:
         if problem is None and self._duration is not None and waited > FIRST_SAMPLE:
             silent = [name for name, reader in self._readers.items() if reader.first is None]
             if silent:
+                rejected = sum(self._readers[name].counters.rejected for name in silent)
+                advice = "check that the device is connected and switched on"
+                if rejected:
+                    advice = (
+                        f"bytes arrive, but none of {rejected} packets is valid: check the baud "
+                        "rate and that the profile is the device's"
+                    )
                 return (
                     f"received no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, but the "
-                    "duration of the run counts from when every device has sent one; check that "
-                    "the device is connected and switched on, or record without it"
+                    "duration of the run counts from when every device has sent one; "
+                    f"{advice}, or record without it"
                 )
         return problem
 

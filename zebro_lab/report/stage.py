@@ -9,7 +9,7 @@ from zebro_lab.report.page import render_report
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.sources import Sources, find_sources
 
-REPORT = SingleFile("report", (b'<meta name="generator" content="zebro-lab ',))
+REPORT = SingleFile("report", {b"<!DOCTYPE html>": b'<meta name="generator" content="zebro-lab '})
 
 
 def report(request: ReportRequest, *, made: datetime) -> Sources:

@@ -66,7 +66,7 @@ def legs_stream(profile: LegProfile) -> RawStream:
 
 def imu_stream(profile: ImuProfile) -> RawStream:
     """Describe the raw samples of an inertial unit."""
-    return RawStream(VALUES_NAME if profile.has_fractions else COUNTS_NAME, {
+    return RawStream(VALUES_NAME if profile.needs_doubles else COUNTS_NAME, {
         "counts": ", ".join(name for name, _ in profile.record),
         "unit": f"quaternion 1/{profile.quaternion_scale:g}, angle 1/{profile.angle_scale:g} rad, "
         f"rate 1/{profile.rate_scale:g} rad/s, force 1/{profile.force_scale:g} m/s2",

@@ -31,6 +31,10 @@ def test_turns_are_the_leg_discs(lab):
         ({"points": {"slips": {"first": 0.0, "lost": 1.0, "count": 3}}}, "slips.last: is missing"),
         ({"points": {"loads": [0.0]}}, "points.loads: found 0 N; expected loads above 0 N"),
         ({"points": {"sweep": 1}}, "points.sweep: found 1; expected true or false"),
+        (
+            {"load": {"set_by": "axis"}},
+            "load.set_by: found 'axis'; set the load by hand: set_by = ",
+        ),
         ({"settle": {"timeout": 0.1}}, "settle.timeout: found 0.1 s; expected at least the wind"),
     ],
 )

@@ -61,6 +61,12 @@ def test_missing_file_and_member_are_named_with_what_to_do(tmp_path):
         read(archive(tmp_path, {"t": GOOD["t"]}))
 
 
+@pytest.mark.parametrize("member", [b"hello", npy(np.array([1 + 2j])), npy(np.zeros(1, "V4"))])
+def test_a_member_that_is_no_array_of_numbers_is_named(member, tmp_path):
+    with pytest.raises(DataError, match=f"no array of numbers as 't'; {ADVICE}"):
+        read(archive(tmp_path, {**GOOD, "t": member}))
+
+
 def test_arrays_may_be_as_large_as_the_limit_and_no_larger(tmp_path):
     file = archive(tmp_path, {"t": GOOD["t"]})
     size = len(GOOD["t"])

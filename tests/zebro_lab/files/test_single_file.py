@@ -11,10 +11,12 @@ from PIL import Image
 from support.written_runs import START, make_run
 from support.written_tracks import content
 from zebro_lab.files.errors import ZebroLabError
+from zebro_lab.files.single_file import require_overwritable
 from zebro_lab.report.request import ReportRequest
-from zebro_lab.report.stage import report
-from zebro_lab.runs.plot_stage import plot_run
+from zebro_lab.report.stage import REPORT, report
+from zebro_lab.runs.plot_stage import PLOT, plot_run
 from zebro_lab.track.annotate_stage import draw_grid
+from zebro_lab.track.camera.stage import LENS
 
 
 @pytest.fixture
@@ -61,6 +63,15 @@ def test_a_grid_is_not_written_among_the_photographs_that_are_tracked(photos):
     with pytest.raises(ZebroLabError, match="photograph"):
         draw_grid(photos, "p01.png", photos / "grid.png")
     assert list(content(photos)) == ["p01.png"]
+
+
+@pytest.mark.parametrize("kind", [REPORT, LENS, PLOT])
+def test_notes_that_quote_the_mark_of_a_command_are_kept(kind, tmp_path):
+    notes = tmp_path / "notes.md"
+    for begin, mark in kind.marks.items():
+        notes.write_bytes(b"Such files hold: " + begin + mark)
+        with pytest.raises(ZebroLabError, match=f"not made by {kind.command}"):
+            require_overwritable(notes, kind)
 
 
 def test_results_of_the_same_command_are_replaced(run, photos, tmp_path):

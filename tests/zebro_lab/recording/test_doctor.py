@@ -3,6 +3,7 @@
 
 import shutil
 import sys
+from importlib.metadata import PackageNotFoundError
 from types import SimpleNamespace
 
 import pytest
@@ -18,6 +19,16 @@ def test_a_missing_package_and_a_wrong_version_are_broken_and_others_extras_are_
     assert "pip install 'no-such-package>=1'" in missing.text
     assert "expected >=999" in wrong.text
     assert "also-missing" not in rest.text
+
+
+def test_a_copy_that_is_not_installed_is_broken(tmp_path, monkeypatch):
+    def missing(name: str) -> str:
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr(doctor, "version", missing)
+    first = next(doctor.examine(tmp_path))
+    assert (first.state, first.what) == ("BROKEN", "zebro-lab")
+    assert "pip install -e" in first.text
 
 
 @pytest.mark.parametrize("shadow", ["can.py", "can/notes.txt"])

@@ -56,6 +56,15 @@ def test_a_stream_that_never_begins_is_a_problem_once_it_is_late():
     streams, _ = watch({"legs": Reader(1.0), "imu": Reader()})
     assert streams.problem(0.9 * FIRST_SAMPLE) is None
     assert "no sample of imu" in streams.problem(1.1 * FIRST_SAMPLE)
+    assert "switched on" in streams.problem(1.1 * FIRST_SAMPLE)
+
+
+def test_packets_that_are_all_rejected_are_told_from_silence():
+    reader = Reader()
+    reader.counters = Counters(damaged=40, refused=2)
+    problem = watch({"imu": reader})[0].problem(1.1 * FIRST_SAMPLE)
+    assert "none of 42 packets is valid: check the baud rate" in problem
+    assert "switched on" not in problem
 
 
 def test_rates_are_samples_a_second():

@@ -3,8 +3,22 @@
 
 import pytest
 
+from rig.device import Sample
+from zebro_lab.mcap.raw_log import RAW_SCHEMAS, decode_raw, encode_raw
 from zebro_lab.recording.devices import profile_text
 from zebro_lab.runs.profile_streams import profile_streams, stored_streams
+
+
+def test_counts_of_an_imu_above_those_of_int32_are_logged(tmp_path):
+    file = tmp_path / "imu.toml"
+    text = profile_text("imu-quaternion-serial")
+    file.write_text(text.replace("record = [", 'record = ["unused:uint32", '))
+    schema = profile_streams(file)["imu"].schema
+    counts = (2**32 - 1, 16384, *(0,) * 9)
+    dtype, _ = RAW_SCHEMAS[schema]
+    data = encode_raw([Sample(0.0, 0.0, 1, counts)], dtype=dtype, start=0.0)
+    assert tuple(decode_raw(data, dtype=dtype).counts[0]) == counts
+
 
 STREAMS = {
     ("legs", "zebro-100-serial"): {"legs"},

@@ -37,7 +37,7 @@ from zebro_lab.track.photo_sequence import upright_size
 KIT_FILE = "kit.pdf"
 FEWEST_VIEWS = 3
 _TRIED = 6  # photographs in which another board is looked for
-LENS = SingleFile("camera calibrate", (HEADING.encode(),))
+LENS = SingleFile("camera calibrate", {HEADING.encode(): b""})
 
 
 _BOARD_EXPECTED = (

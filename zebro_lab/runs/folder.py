@@ -61,6 +61,15 @@ def require_new(folder: Path) -> None:
         raise AlreadyExists(f"{folder} exists already; choose another name with --label")
 
 
+def require_profiles(folder: Path, manifest: RunManifest) -> None:
+    """Raise DataError where a run with a log is of an early version, which stored no profiles."""
+    if not manifest.profiles:
+        raise DataError(
+            "is of an earlier version without profiles; export it with that version",
+            file=folder / MANIFEST_FILE,
+        )
+
+
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
     """Read the samples of a slip-rig run; of a damaged log those before the damage, with a note.
 
@@ -76,11 +85,7 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
             f"is a run of kind '{manifest.kind}', expected '{RIG_KIND}'; do not give this run",
             file=folder / MANIFEST_FILE,
         )
-    if not manifest.profiles:
-        raise DataError(
-            "is of an earlier version without profiles; export it with that version",
-            file=folder / MANIFEST_FILE,
-        )
+    require_profiles(folder, manifest)
     path = folder / LOG_FILE
     if not path.is_file():
         raise NotFound(f"{path}: missing; copy it from the computer where the run was recorded")

@@ -18,7 +18,7 @@ from rig.sample_columns import SampleColumns
 from rig.zebro.profile import decode_angles, load_leg_profile
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
-from zebro_lab.runs.folder import LOG_FILE, require_recorded
+from zebro_lab.runs.folder import LOG_FILE, require_profiles, require_recorded
 from zebro_lab.runs.manifest import MANIFEST_FILE, profile_file, read_manifest
 from zebro_lab.runs.profile_streams import IMU
 from zebro_lab.tables.raw_table import RawTable
@@ -71,6 +71,7 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
     manifest = read_manifest(folder)
     if manifest.is_track_alone:
         raise DataError(f"{folder}: {TRACK_ALONE}")
+    require_profiles(folder, manifest)
     log, profile = folder / LOG_FILE, profile_file(folder, LEGS)
     for file in (log, profile):
         if not file.is_file():

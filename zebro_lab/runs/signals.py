@@ -23,7 +23,7 @@ from zebro_lab.files.source_names import is_simulated
 from zebro_lab.mcap.log_writer import LOG, WARNING
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
-from zebro_lab.runs.folder import LOG_FILE, epoch_ns, run_state
+from zebro_lab.runs.folder import LOG_FILE, epoch_ns, require_profiles, run_state
 from zebro_lab.runs.manifest import RIG, RunManifest, profile_file, read_manifest
 from zebro_lab.runs.recorded_walk import LEGS
 
@@ -156,6 +156,7 @@ def read_signals(folder: Path) -> RunSignals:
     manifest = read_manifest(folder)
     log = folder / LOG_FILE
     raw = read_raw_log(log)
+    require_profiles(folder, manifest)
     panels = [p for topic, stream in raw.streams.items()
               for p in _panels(folder, manifest, topic, stream)]  # fmt: skip
     notes = () if raw.damage is None else (f"{log} is incomplete ({raw.damage})",)

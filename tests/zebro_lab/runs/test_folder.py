@@ -13,6 +13,8 @@ from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
 from zebro_lab.runs.folder import read_slip_rig_run, removing_new_folders
 from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.runs.recorded_walk import read_recorded_legs
+from zebro_lab.runs.signals import read_signals
 
 FIELDS = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
 
@@ -45,8 +47,9 @@ def test_a_run_of_a_version_without_profiles_and_an_unknown_zero_are_refused(tmp
     with pytest.raises(DataError, match=r"is unknown; .*constants\.zero_normal"):
         read_slip_rig_run(folder)
     edit(folder, profiles=...)
-    with pytest.raises(DataError, match=r"run\.json: is of an earlier version without profiles"):
-        read_slip_rig_run(folder)
+    for read in (read_slip_rig_run, read_signals, read_recorded_legs):
+        with pytest.raises(DataError, match=r"run\.json: is of an earlier version without prof"):
+            read(folder)
 
 
 def test_start_in_any_zone_names_the_folder_in_utc(tmp_path):

@@ -67,7 +67,8 @@ def smaller(tmp_path, monkeypatch):
     fit_quickly(monkeypatch)
     # The floor as pictures show it, which stay blank.
     monkeypatch.setattr(
-        "zebro_lab.track.photographs.rectify_floor", lambda *_, **__: np.zeros((2, 2, 3), np.uint8)
+        "zebro_lab.track.photographs.PlacedPhoto.from_above",
+        lambda *_, **__: np.zeros((2, 2, 3), np.uint8),
     )
     monkeypatch.chdir(tmp_path)
     return tmp_path

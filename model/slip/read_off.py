@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import OptimizeWarning, curve_fit
 
 from model.arrays import Array
 from model.errors import DomainError
@@ -127,6 +126,8 @@ def _least_squares(
     kappa: Array, f: Array, start: tuple[float, float, float, float]
 ) -> tuple[tuple[Array, Array], float]:
     """Return the closest B, C, D and E with their covariance, and the misfit, from one start."""
+    from scipy.optimize import OptimizeWarning, curve_fit
+
     with warnings.catch_warnings():  # of a covariance that samples do not tell: it is infinite then
         warnings.simplefilter("ignore", OptimizeWarning)
         found = curve_fit(

@@ -6,11 +6,10 @@ import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 import tomlkit
-from scipy.spatial.transform import Rotation
 
 from model.arrays import Array
 from model.toml_table import TomlTable
@@ -19,6 +18,9 @@ from rig.driver_table import IMUS
 from rig.links.packet import LONGEST_BODY
 from rig.profile import SCHEMA, open_profile
 from rig.sample_columns import as_columns
+
+if TYPE_CHECKING:  # commands of devices that are no such units start without it
+    from scipy.spatial.transform import Rotation
 
 NORM_TOLERANCE: Final = 0.05
 """Largest difference of a quaternion's length from 1 [-]."""
@@ -231,7 +233,7 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
     )
 
 
-def _decode_motion(profile: ImuProfile, counts: Array) -> tuple[Rotation, Array, Array]:
+def _decode_motion(profile: ImuProfile, counts: Array) -> tuple["Rotation", Array, Array]:
     """Compute rotations from the body's axes to the inertial frame, and motion in these axes.
 
     Args:
@@ -242,6 +244,8 @@ def _decode_motion(profile: ImuProfile, counts: Array) -> tuple[Rotation, Array,
         The rotations; angular rate [rad/s] and specific force [m/s²], shape (n, 3) each, NaN where
         the unit does not measure them.
     """
+    from scipy.spatial.transform import Rotation
+
     mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
     places = profile.columns(QUATERNION)
     if places:
@@ -262,7 +266,7 @@ def _decode_motion(profile: ImuProfile, counts: Array) -> tuple[Rotation, Array,
 
 
 def encode_orientation(
-    profile: ImuProfile, rotation: Rotation, angular_rate: Array, specific_force: Array
+    profile: ImuProfile, rotation: "Rotation", angular_rate: Array, specific_force: Array
 ) -> tuple[float, ...]:
     """Compute the counts of one record; the inverse of `decode_orientation` but for rounding.
 
@@ -276,6 +280,8 @@ def encode_orientation(
         The counts of the profile's record, whole ones rounded and clipped to their type; 0 for an
         unused one.
     """
+    from scipy.spatial.transform import Rotation
+
     mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
     sensor = rotation * mounting
     parts = (
@@ -290,7 +296,7 @@ def encode_orientation(
     return tuple(_as_count(float(values.get(name, 0.0)), kind) for name, kind in profile.record)
 
 
-def _turned(mounting: Rotation, vectors: Array) -> Array:
+def _turned(mounting: "Rotation", vectors: Array) -> Array:
     """Rotate vectors, shape (n, 3); one with an axis that is not measured only by no rotation."""
     if mounting.magnitude() == 0:  # else a NaN of one axis would make all three NaN
         return vectors

@@ -5,15 +5,17 @@ Not modelled: noise, drift, temperature, vibration, acceleration of the body and
 """
 
 from collections.abc import Callable
-from typing import Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from model.arrays import Array
 from rig.imu.profile import ImuProfile, encode_orientation
 from rig.links.faults import PERFECT_LINE, Faults, FaultyWire
 from rig.links.packet import TICK, Kind, Packet, encode_packet
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 GRAVITY: Final = 9.81
 """Acceleration of gravity [m/s²]."""
@@ -79,13 +81,15 @@ class SimulatedImu:
         body = self._profile.body.pack(*counts)
         return encode_packet(Packet(Kind.ORIENTATION, number, ticks, body))
 
-    def _motion(self, now: float) -> tuple[Rotation, Array, Array]:
+    def _motion(self, now: float) -> tuple["Rotation", Array, Array]:
         """Compute the motion of the body at the time of the next sample [s].
 
         Returns:
             Rotation from body to inertial frame; angular rate [rad/s] and specific force [m/s²] in
             the body's axes, each of shape (3,). The acceleration is taken as 0.
         """
+        from scipy.spatial.transform import Rotation
+
         roll, pitch, yaw = self._attitude(now)
         rotation = Rotation.from_euler("ZYX", [yaw, pitch, roll])
         before, self._before = self._before or rotation, rotation

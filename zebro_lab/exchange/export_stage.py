@@ -15,7 +15,8 @@ from zebro_lab.files.settings_table import fill_in
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE, read_slip_rig_run, run_state
 from zebro_lab.runs.manifest import RECORDING, RunManifest, read_manifest
-from zebro_lab.runs.recorded_walk import LEGS, read_recorded_legs
+from zebro_lab.runs.profile_streams import LEGS
+from zebro_lab.runs.recorded_walk import read_recorded_legs
 from zebro_lab.tables.columns import COLUMNS_FILE
 
 Format = Literal["csv", "parquet"]

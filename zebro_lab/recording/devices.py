@@ -27,13 +27,12 @@ from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_legs, simulated_rig_devices
 from rig.zebro.commands import GaitPlayer
 from rig.zebro.profile import load_leg_profile
-from rig.zebro.simulated_body import SimulatedBody
 from rig.zebro.simulated_legs import SimulatedLegs
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.replayed import IMU, read_replay
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.runs.manifest import RIG
-from zebro_lab.runs.recorded_walk import LEGS
+from zebro_lab.runs.profile_streams import LEGS
 
 RIG_PROFILE: Final = "rig-odrive-netft"
 PAUSE: Final = 0.053
@@ -103,7 +102,11 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
     with ExitStack() as stack:
         # Loops that have to be compiled are compiled here, before a device is opened or served
         twin = _simulated_robot(request, rng)
-        bodies = [at_rest if twin is None else SimulatedBody(twin) for _ in request.imus]
+        bodies: list[Attitude] = [at_rest for _ in request.imus]
+        if twin is not None and bodies:
+            from rig.zebro.simulated_body import SimulatedBody  # compiled loops are loaded
+
+            bodies = [SimulatedBody(twin) for _ in bodies]
         if request.zebro is not None:
             _add_legs(opened, stack, request, twin, rng)
         names = ["imu"] if len(request.imus) == 1 else [f"imu{i + 1}" for i, _ in

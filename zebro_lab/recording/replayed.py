@@ -12,8 +12,7 @@ from zebro_lab.files.source_names import is_simulated
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
-from zebro_lab.runs.profile_streams import IMU, profile_streams
-from zebro_lab.runs.recorded_walk import LEGS
+from zebro_lab.runs.profile_streams import IMU, LEGS, profile_streams
 
 _RIG_STREAMS: Final = ("drives", "load_cell", "board")
 _MARGIN: Final = 1e-3  # so that rounding loses no last sample [s]

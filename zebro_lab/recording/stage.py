@@ -25,7 +25,6 @@ from zebro_lab.recording.run_files import needing_threads
 from zebro_lab.recording.status import COUNT_EVERY, RecordStatus, StreamWatch, reading_failure
 from zebro_lab.robot.leg_warnings import WARNING as SUSPECTED
 from zebro_lab.robot.leg_warnings import leg_warnings
-from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 PATIENCE: Final = 1.0
@@ -278,6 +277,8 @@ def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> Non
 
 def _played(path: Path) -> tuple[SampledReference, tuple[str, ...]]:
     """Read the leg angles to play, from time 0, with notes on what is suspected of them."""
+    from zebro_lab.runs.legs import read_leg_log  # pandas takes half a second
+
     reference = read_leg_log(path).reference
     notes = leg_warnings(reference)
     if any(line.startswith(SUSPECTED) for line in notes):

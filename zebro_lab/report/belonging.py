@@ -14,7 +14,7 @@ from zebro_lab.report.pictures import VALIDATION, lies_in
 from zebro_lab.report.sources import ReportedRun, ReportPart, Sources
 from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import profile_file
-from zebro_lab.runs.recorded_walk import LEGS
+from zebro_lab.runs.profile_streams import LEGS
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.walk.folder import INFORMED_MODEL, PREDICTION
 

@@ -18,6 +18,7 @@ from zebro_lab.mcap.raw_log import COUNTS_NAME, VALUES_NAME, RawStream
 from zebro_lab.runs.manifest import RIG, profile_file
 
 IMU: Final = "imu"
+LEGS: Final = "legs"
 
 
 def profile_streams(file: Path) -> dict[str, RawStream]:

@@ -20,10 +20,9 @@ from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE, require_profiles, require_recorded
 from zebro_lab.runs.manifest import MANIFEST_FILE, profile_file, read_manifest
-from zebro_lab.runs.profile_streams import IMU
+from zebro_lab.runs.profile_streams import IMU, LEGS
 from zebro_lab.tables.raw_table import RawTable
 
-LEGS = "legs"
 TRACK_ALONE = "holds a track without leg angles; import it again with its leg log, with --legs"
 
 

@@ -25,7 +25,7 @@ from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, require_profiles, run_state
 from zebro_lab.runs.manifest import RIG, RunManifest, profile_file, read_manifest
-from zebro_lab.runs.recorded_walk import LEGS
+from zebro_lab.runs.profile_streams import LEGS
 
 Curves: TypeAlias = Iterator[tuple[str, str, Array, Mapping[str, Array]]]
 """Quantity, unit, times [s] and curves by name, of one stream after another."""

@@ -104,13 +104,13 @@ def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
         Values, shape (...) or (..., channels); outside the picture they fall to 0 within a pixel.
     """
     shape = corners_px.shape[:-1]
-    flat = corners_px.reshape(-1, 1, 2).astype(np.float32)
-    # cv2.remap takes at most 32767 rows.
+    row = corners_px.reshape(1, -1, 2).astype(np.float32)
+    # cv2.remap takes at most 32767 columns, and rows of one column one by one.
     parts = [
         cv2.remap(pixels, part, None, cv2.INTER_LINEAR)  # pyright: ignore[reportCallIssue, reportArgumentType] # OpenCV's own documentation allows no second map
-        for part in np.array_split(flat, 1 + len(flat) // 30_000)
+        for part in np.array_split(row, 1 + row.shape[1] // 30_000, axis=1)
     ]
-    values = np.concatenate(parts).astype(np.float32)
+    values = np.concatenate(parts, axis=1).astype(np.float32, copy=False)
     return values.reshape(*shape, *values.shape[2:])
 
 

@@ -112,7 +112,8 @@ def robot_density(difference: Array) -> Array:
         Density per cubed grey level, shape (...).
     """
     norm = (2 * np.pi) ** 1.5 * NOISE**3
-    return np.exp(-0.5 * (difference**2).sum(axis=-1) / NOISE**2) / norm
+    square = np.einsum("...i,...i", difference, difference)
+    return np.exp(-0.5 * square / NOISE**2) / norm
 
 
 def _smooth(

@@ -97,6 +97,11 @@ class PastedReading(Reading):
         return density.astype(np.float32)
 
     @cached_property
+    def layers(self) -> NDArray[np.float32]:
+        """The picture's colours and their density among all points used, (rows, columns, 4)."""
+        return np.dstack((self.picture, self.usual))
+
+    @cached_property
     def floor(self) -> NDArray[np.bool_]:
         """Mask of the plane's points whose colour is the floor's, lit or in shadow."""
         width = self.length / self.plane.cell
@@ -105,8 +110,15 @@ class PastedReading(Reading):
     @cached_property
     def likelier(self) -> tuple["PastedReading", list[Pasted]]:
         """The reading with the greater sum of gains, without or with floor, and its exposures."""
-        ways = [(way, way.search()) for way in (self, replace(self, with_floor=True))]
+        ways = [(way, way.search(self.matches)) for way in (self, replace(self, with_floor=True))]
         return max(ways, key=lambda way: sum(each.gain for each in way[1]))
+
+    @cached_property
+    def matches(self) -> list[Array]:
+        """Poses at which the whole known exposure correlates with the picture, the best first."""
+        robot = self.body.read(self.picture, self.known.pose.planar)
+        template = self.body.template(robot, self.known.plate.height)
+        return match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
 
     def find(self) -> Array:
         """Find all exposures in the likelier of the readings without and with floor.
@@ -173,14 +185,17 @@ class PastedReading(Reading):
             visible &= ~self.hidden_points(each.pose)
         return visible.astype(np.float32)
 
-    def search(self) -> list[Pasted]:
-        """Find all exposures for `with_floor` as it is, the known one first."""
+    def search(self, matches: Sequence[Array]) -> list[Pasted]:
+        """Find all exposures for `with_floor` as it is, the known one first.
+
+        Args:
+            matches: Where to look beyond the neighbours of those found (see `matches`).
+        """
         pose = self.known.pose.planar
         robot = self.body.read(self.picture, pose)
         gains, _ = self.gains(pose[None], robot, self.shown([]), self.body)
         found = self.stack_under(Pasted(pose, float(gains[0]), robot), [])
-        template = self.body.template(robot, self.known.plate.height)
-        beyond = match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
+        beyond = list(matches)
         while beyond:
             poses = np.array([each.pose for each in found])
             beyond.sort(key=lambda pose: -distances(poses, pose).min())
@@ -329,9 +344,8 @@ class PastedReading(Reading):
         parts = []
         for some in np.array_split(poses, 1 + len(poses) // _TOGETHER):
             place = body.on(some)
-            seen, usual = sample(self.picture, place), sample(self.usual, place)
-            visible = sample(shown, place) > 0.9
-            same = robot_density(seen - robot) / np.maximum(usual, 1e-12)
+            seen, visible = sample(self.layers, place), sample(shown, place) > 0.9
+            same = robot_density(seen[..., :3] - robot) / np.maximum(seen[..., 3], 1e-12)
             log_odds = np.log(_SHOWS * same + 0.4 * (1 - _SHOWS))
             gain = np.where(visible, log_odds, 0.0).mean(axis=(1, 2))
             parts.append((gain, visible.mean(axis=(1, 2))))

@@ -63,7 +63,7 @@ class BodyRaster:
         )
         return BodyTemplate(plate, self.cell, points, values)
 
-    def on(self, poses: Array) -> Array:
+    def on(self, poses: Array) -> NDArray[np.float32]:
         """Compute the coordinates of the points on the plane's raster.
 
         Args:
@@ -73,10 +73,13 @@ class BodyRaster:
             Column and row on the plane's raster, shape (n, rows, columns, 2) [cells].
         """
         c, s = (f(poses[:, 2])[:, None, None] for f in (np.cos, np.sin))
-        x = poses[:, 0][:, None, None] + c * self.x - s * self.y
-        y = poses[:, 1][:, None, None] + s * self.x + c * self.y
-        plane = self.plane
-        return np.stack(((x - plane.low[0]) / plane.cell, (plane.high[1] - y) / plane.cell), -1)
+        ahead, left = self.x[:, :1], self.y[:1]
+        x = poses[:, 0][:, None, None] + c * ahead - s * left
+        y = poses[:, 1][:, None, None] + s * ahead + c * left
+        plane, place = self.plane, np.empty((*x.shape, 2), np.float32)  # as `sample` takes it
+        place[..., 0] = (x - plane.low[0]) / plane.cell
+        place[..., 1] = (plane.high[1] - y) / plane.cell
+        return place
 
     def read(self, layer: NDArray, pose: Array) -> NDArray[np.float32]:
         """Interpolate a layer of the plane at the points of the robot.

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Fits of few draws and steps, for claims that need no converged posterior."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import pytest
@@ -14,8 +16,21 @@ FEW = {"FIRST_LOOK": 10, "CHUNK": 5, "IMPORTANCE_DRAWS": 1000, "EFFECTIVE_DRAWS"
 """Constants of `model.bayes.calibrate`: steps before the first look, and at once, and draws."""
 
 
+NO_PRIOR_STARTS = ("model.bayes.approximation.FEW_BLOCKS", 0)
+"""Constant by which all searches for a mode start at the least-squares curve."""
+
+
+@contextmanager
+def few_starts() -> Iterator[None]:
+    """Search from the least-squares curve alone, for data that leave no doubt which mode it is."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(*NO_PRIOR_STARTS)
+        yield
+
+
 def fit_quickly(patch: pytest.MonkeyPatch) -> None:
-    """Let `calibrate-slip` take blocks of 30, two ensembles, and few steps and draws."""
+    """Let `calibrate-slip` take blocks of 30, two ensembles, and few starts, steps and draws."""
+    patch.setattr(*NO_PRIOR_STARTS)
     for name, value in FEW.items():
         patch.setattr(f"model.bayes.calibrate.{name}", value)
     sampler = stage._sampler

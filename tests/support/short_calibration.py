@@ -18,11 +18,13 @@ from model.bayes.posterior import LoadCell
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
+from support.quick_fits import few_starts
 from support.simulated_sweep import simulate_sweep
 from zebro_lab.calibration.folder import write_tables
 
 
 @cache
+@few_starts()
 def short_calibration() -> Calibration:
     """Fit a simulated sweep at two loads with 40 steps; it is far from converged."""
     rng = np.random.default_rng(2)

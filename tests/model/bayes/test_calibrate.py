@@ -18,7 +18,7 @@ from model.errors import FitError
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
-from support.quick_fits import FEW
+from support.quick_fits import FEW, NO_PRIOR_STARTS
 from support.simulated_sweep import simulate_sweep
 
 
@@ -47,6 +47,7 @@ def samples():
 
 def fitted(samples, watcher, **options):
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(*NO_PRIOR_STARTS)
         for name, value in FEW.items():
             patch.setattr(f"model.bayes.calibrate.{name}", value)
         return calibrate(

@@ -16,6 +16,7 @@ from model.slip import Brush, MagicFormula, SidedLaw
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
 from rig.slip_rig.sweep import SweepPlan
+from support.quick_fits import few_starts
 from support.simulated_sweep import simulate_sweep
 
 STIFFNESS = THESIS_VALUES[0]
@@ -43,6 +44,7 @@ def rows_of(samples, chosen):
     )
 
 
+@few_starts()
 def prepared(samples, law=THESIS_LAW, *, choice=None, validate=False, load_cell=None):
     return prepare_fit(
         samples,

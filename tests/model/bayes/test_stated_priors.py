@@ -27,6 +27,7 @@ from model.slip.samples import SlipSamples
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
+from support.quick_fits import few_starts
 from support.simulated_sweep import simulate_sweep
 
 PERFECT = RigErrors(1e-4, 1e-3)  # so that one side of zero slip is nearly Gaussian
@@ -119,6 +120,7 @@ def some_runs(half: int) -> SlipSamples:
     )  # fmt: skip
 
 
+@few_starts()
 def fitted(data: SlipSamples, stated: StatedPriors = StatedPriors()) -> PreparedFit:  # noqa: B008
     return prepare_fit(
         data, THESIS_LAW, load_cell=LoadCell(), rig_errors=PERFECT, rng=np.random.default_rng(1),

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from support.calibrate_processes import EARLY, FILES, JUDGED_EARLY, SMALLER_FIT, names, patched
+from support.quick_fits import NO_PRIOR_STARTS
 
 pytestmark = [pytest.mark.timeout(600), pytest.mark.usefixtures("blank_pictures")]
 
@@ -28,7 +29,8 @@ def last_line(stderr: str) -> str:
 
 
 def judge_early(monkeypatch) -> None:
-    """Let fits of this process end as early as those of processes do."""
+    """Let fits of this process start and end as those of processes do."""
+    monkeypatch.setattr(*NO_PRIOR_STARTS)
     for name, value in EARLY.items():
         monkeypatch.setattr(f"model.bayes.calibrate.{name}", value)
 

@@ -114,11 +114,21 @@ def project(camera: Camera, pose: CameraPose, points_world: ArrayLike) -> Array:
     Returns:
         Pixels, shape (n, 2) [px]. Points behind the camera give meaningless numbers.
     """
-    points = np.ascontiguousarray(points_world, dtype=float).reshape(-1, 1, 3)
-    pixels, _ = cv2.projectPoints(
-        points, pose.rotation_vector, pose.translation, camera.matrix, camera.distortion
+    # cv2.projectPoints would compute all derivatives too, which takes most of its time.
+    x, y, z = pose.rotation @ np.asarray(points_world, dtype=float).reshape(-1, 3).T + np.reshape(
+        pose.translation, (3, 1)
     )
-    return np.asarray(pixels, dtype=float).reshape(-1, 2)
+    k1, k2, p1, p2, k3 = np.ravel(camera.distortion)
+    with np.errstate(over="ignore", invalid="ignore"):  # beside and behind the camera
+        z = np.where(z == 0.0, 1.0, z)
+        x, y = x / z, y / z
+        xx, yy, xy = x * x, y * y, x * y
+        r2 = xx + yy
+        radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        u = x * radial + 2 * p1 * xy + p2 * (r2 + 2 * xx)
+        v = y * radial + p1 * (r2 + 2 * yy) + 2 * p2 * xy
+        matrix = camera.matrix
+        return np.column_stack((matrix[0, 0] * u + matrix[0, 2], matrix[1, 1] * v + matrix[1, 2]))
 
 
 class Projection(NamedTuple):

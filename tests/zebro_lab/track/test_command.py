@@ -1,31 +1,27 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab track` as its user meets it."""
 
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from support.bundled_walk import PHOTOS, WALK
-from support.commands import COMMAND
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")
 
 
-def test_preview_in_a_pipe_says_what_is_seen_and_draws_it(files):
-    process = subprocess.run(
-        [COMMAND, "track", str(PHOTOS), "--camera", "camera.toml", "--floor", "floor.toml",
-         "--robot", str(WALK / "robot.toml"), "--preview", "preview.png"],
-        capture_output=True, text=True, check=False, cwd=files,
+def test_preview_in_a_pipe_says_what_is_seen_and_draws_it(run_command, files):
+    code, out, err = run_command(
+        "track", PHOTOS, "--camera", files / "camera.toml", "--floor", files / "floor.toml",
+        "--robot", WALK / "robot.toml", "--preview", files / "preview.png",
     )  # fmt: skip
-    assert process.returncode == 0, process.stderr
-    assert process.stderr == ""
+    assert (code, err) == (0, "")
     for part in ("marks 10, 11, 12, 13 are seen", "a pixel is ", "10 to 11: tape measure 1.7000 m"):
-        assert part in process.stdout
+        assert part in out
     assert (files / "preview.png").is_file()
 
 
-def test_a_wrong_tape_is_pointed_at(run_command, files):
+def test_a_wrong_tape_is_pointed_at(run_command, files, undrawn):
     floor = files / "floor.toml"
     floor.write_text(floor.read_text().replace("x = 2.2", "x = 2.215"))
     code, out, err = run_command(

@@ -3,7 +3,6 @@
 
 import json
 import re
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -25,9 +24,8 @@ from zebro_lab.track.request import TimeRequest
 from zebro_lab.track.stage import preview, track
 
 
-def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(request_):
-    result = track(request_, Nobody())
-    table = pd.read_csv(result.folder / "track.csv")
+def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(usual):
+    table = pd.read_csv(usual.folder / "track.csv")
     true = truth(table["photo"])
     assert tuple(table.columns) == TRACK_COLUMNS
     error = table[["x_m", "y_m", "yaw_rad"]].to_numpy() - true[["x", "y", "yaw"]]
@@ -36,23 +34,13 @@ def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(reque
     assert np.degrees(np.abs(error["yaw"]).max()) < 0.1
     assert (np.abs(error) / sd).max(axis=None) < 3
     np.testing.assert_allclose(np.diff(table["t_s"]), np.diff(true["t"]), atol=2e-3)
-    manifest = json.loads((result.folder / "manifest.json").read_text())
+    manifest = json.loads((usual.folder / "manifest.json").read_text())
     assert (manifest["kind"], manifest["source"]) == ("track", "sim:photographs")
     names = {name for name in TRACKED.names if not name.endswith((".svg", ".pdf"))}
-    assert {path.name for path in result.folder.iterdir()} == {*names, MANIFEST} - {
+    assert {path.name for path in usual.folder.iterdir()} == {*names, MANIFEST} - {
         "annotations.toml"
     }
-    assert len((result.folder / "track.tum").read_text().splitlines()) == len(SOME)
-
-
-@pytest.fixture
-def few(request_, tmp_path):
-    """Return what is asked of two of the photographs."""
-    photos = tmp_path / "few"
-    photos.mkdir()
-    for number in SOME[:2]:
-        shutil.copy(request_.photos / f"simulated_{number}.jpg", photos)
-    return replace(request_, photos=photos)
+    assert len((usual.folder / "track.tum").read_text().splitlines()) == len(SOME)
 
 
 def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(few, undrawn):
@@ -66,23 +54,22 @@ def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(f
 
 
 def test_a_mean_height_known_better_makes_all_poses_surer_and_keeps_the_bounce(
-    request_, tmp_path, undrawn
+    usual, request_, undrawn
 ):
-    known = replace(request_, mean_height_sd="0.2mm", out=tmp_path / "known")
-    usual, surer = (track(each, Nobody()).tracked.track.covariance for each in (request_, known))
+    known = track(replace(request_, mean_height_sd="0.2mm"), Nobody())
+    covariances = [each.tracked.track.covariance[:, :2, :2] for each in (usual, known)]
     # The mean height is half of the variance of place here.
-    deviations = [np.sqrt(np.trace(each[:, :2, :2], axis1=1, axis2=2)) for each in (usual, surer)]
+    deviations = [np.sqrt(np.trace(each, axis1=1, axis2=2)) for each in covariances]
     assert (deviations[1] < 0.8 * deviations[0]).all()
     settings = json.loads((known.folder / "manifest.json").read_text())["settings"]
     assert (settings["mean_height_sd"], settings["height_sd"]) == (2e-4, 5e-3)
 
 
-def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, undrawn):
+def test_several_processes_find_what_one_finds(usual, request_, monkeypatch, undrawn):
     monkeypatch.setattr(search, "WORTH_WORKERS", 0.0)
-    one = track(request_, Nobody())
-    two = track(replace(request_, out=tmp_path / "two"), Nobody(), workers=2)
+    two = track(request_, Nobody(), workers=2)
     # Not to the last digit: a stretch begins by looking at the whole photograph.
-    difference = one.tracked.track.poses - two.tracked.track.poses
+    difference = usual.tracked.track.poses - two.tracked.track.poses
     assert np.abs(difference).max() < 1e-4
 
 
@@ -145,7 +132,7 @@ def test_the_preview_compares_tape_and_photograph(request_, tmp_path):
     assert 1e-3 < seen.scale < 4e-3
 
 
-def test_photographs_without_times_are_previewed_by_name(request_, tmp_path):
+def test_photographs_without_times_are_previewed_by_name(request_, tmp_path, undrawn):
     photos = tmp_path / "photos"
     photos.mkdir()
     for path in sorted(request_.photos.glob("*.jpg"))[:2]:
@@ -154,7 +141,7 @@ def test_photographs_without_times_are_previewed_by_name(request_, tmp_path):
     assert seen.photo == min(path.name for path in photos.iterdir())
 
 
-def test_a_preview_warns_of_what_a_track_would_warn_of(request_, tmp_path):
+def test_a_preview_warns_of_what_a_track_would_warn_of(request_, tmp_path, undrawn):
     lens = tmp_path / "camera.toml"
     lens.write_text(request_.camera.read_text().split("[calibration]")[0])
     floor = tmp_path / "floor.toml"

@@ -79,26 +79,6 @@ class RigidPath:
             yaw = np.unwrap(np.arctan2(ahead[:, second], ahead[:, first]))
         return Poses(self.t, self.position[:, [first, second]], yaw)
 
-    def tilt(self, plane: str) -> Array:
-        """Compute the angle by which each rotation leaves the plane, seen from the first one.
-
-        It is the angle between the plane's normal and the normal as the body carries it along from
-        the first pose: zero for a body that turns in the plane alone, however it is mounted.
-
-        Args:
-            plane: Two of the axes x, y and z.
-
-        Returns:
-            Angles, shape (n,) [rad]; zero without rotations.
-        """
-        if self.rotation is None:
-            return np.zeros(len(self))
-        normal = 3 - sum(plane_axes(plane))
-        carried = self.rotation @ self.rotation[0].T
-        axis = carried[:, :, normal]
-        across = np.linalg.norm(np.delete(axis, normal, axis=1), axis=1)
-        return np.arctan2(across, axis[:, normal])
-
 
 def plane_axes(plane: str) -> tuple[int, int]:
     """Return the indices of a plane's two axes.

@@ -31,14 +31,6 @@ def test_a_left_turn_stays_a_left_turn_in_every_frame_seen_from_above(plane):
     np.testing.assert_allclose(again.position, flat.position, atol=1e-9)
 
 
-def test_a_body_that_turns_in_the_plane_has_no_tilt_however_it_is_mounted():
-    mounted = Rotation.from_rotvec([1.0, -0.5, 2.0])
-    turns = Rotation.from_rotvec(np.outer(np.linspace(0, 5, 9), [0, 0, 1]))
-    path = RigidPath(np.arange(9.0), np.zeros((9, 3)), (turns * mounted).as_matrix())
-    assert path.tilt("xy").max() < 1e-9
-    assert path.tilt("xz").max() > 1.0
-
-
 def test_quaternions_give_the_rotations_of_scipy():
     q = np.random.default_rng(1).normal(size=(20, 4))
     np.testing.assert_allclose(

@@ -29,7 +29,7 @@ from zebro_lab.tables.columns_file import read_mapped_columns
 from zebro_lab.tables.columns_sections import columns_above
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.terminal.leg_options import joint_names
-from zebro_lab.track.foreign import ForeignTrack, PoseSd, read_foreign_track
+from zebro_lab.track.foreign import ForeignTrack, read_foreign_track
 from zebro_lab.track.trajectory.request import TrajectoryRequest
 from zebro_lab.track.trajectory.table import MAPPED_UNITS
 
@@ -188,7 +188,7 @@ def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None
     columns, topic = read_mapped_columns(TRACK, path, request.columns, MAPPED_UNITS, alone=alone)
     track = read_foreign_track(
         path, columns, request.trajectory, topic=topic, topics=request.topic,
-        sd=None if request.pose_sd is None else PoseSd(*request.pose_sd),
+        sd=request.pose_sd,
     )  # fmt: skip
     return track, track.topic
 

@@ -27,6 +27,7 @@ from zebro_lab.runs.manifest import RunManifest
 from zebro_lab.runs.table_run import table_samples, write_table_run
 from zebro_lab.tables.columns import IMU, LEGS, TRACK
 from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.track.file import tum_lines
 from zebro_lab.track.folder import track_folder
 from zebro_lab.track.foreign import ForeignTrack
 
@@ -133,7 +134,7 @@ def _write_track(out: Path, walk: ImportedWalk, track: ForeignTrack) -> None:
     with track_folder(
         out,
         track.columns,
-        tum=track.tum,
+        tum=tum_lines(track.track.poses).splitlines(),
         source=track.track.source,
         settings={"imported": str(track.track.file), "zero_s": walk.zero},
         inputs=file_hashes(track.files),

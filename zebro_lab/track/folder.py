@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from model.arrays import Array
 from zebro_lab.files.folder_manifest import read_folder_manifest
 from zebro_lab.files.picture_format import in_every_format
 from zebro_lab.files.replacement import recover
@@ -32,7 +33,7 @@ _DIGITS = "%.10g"
 @contextmanager
 def track_folder(
     out: Path,
-    columns: Mapping[str, Sequence[float] | Sequence[str]],
+    columns: Mapping[str, Sequence[float] | Sequence[str] | Array],
     *,
     tum: Sequence[str],
     source: str,

@@ -120,7 +120,6 @@ def test_two_topics_of_a_ros_log_are_validated(validated, log):
     [
         ((), {}, "topics /odom, /truth; .*--topic"),
         (("/trut",), {}, "/trut; did you mean '/truth'"),
-        (("/odom",), {"times": "t.txt"}, "--times: .*leave the option out"),
         (("/odom",), {"layout": (Layout.TUM,)}, "--layout: .*leave the option out"),
     ],
 )

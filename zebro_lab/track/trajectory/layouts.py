@@ -18,20 +18,20 @@ from zebro_lab.tables.header_units import unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import has_table_name
 from zebro_lab.track.trajectory.request import Layout
-from zebro_lab.track.trajectory.table import named_columns
+from zebro_lab.track.trajectory.table import QUATERNION, named_columns
 
-_TUM: Final = ("t_s", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
-_EUROC: Final = ("t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz")
-_MATRIX: Final = 12  # numbers of a KITTI line
+_POSITION: Final = ("x_m", "y_m", "z_m")
+_ROTATION: Final = tuple(f"r{row}{column}" for row in "123" for column in "123")
+COLUMNS: Final = {
+    Layout.TUM: ("t_s", *_POSITION, *QUATERNION),
+    Layout.EUROC: ("t_s", *_POSITION, "qw", "qx", "qy", "qz"),
+    Layout.KITTI: tuple(f"r{i}{j}" if j < 4 else _POSITION[i - 1] for i in (1, 2, 3)
+                        for j in (1, 2, 3, 4)),
+}  # fmt: skip
+"""Columns of the numbers of a line; of KITTI three rows of a 4x4 matrix, rotation and position."""
 _ROTATION_TOLERANCE: Final = 0.05  # of a product of two columns; files round to a few digits
 _UPRIGHT: Final = 0.1
 """Largest part of a quaternion across the normal of the floor for a body that is upright."""
-_EXPECTED: Final = {
-    None: "8 (TUM) or 12 (KITTI)",
-    Layout.TUM: "8 (time, position, quaternion)",
-    Layout.EUROC: "8 or more (time, position, quaternion)",
-    Layout.KITTI: "12 (three rows of a matrix)",
-}  # fmt: skip
 _PLACE_OF_W: Final = "give --layout tum (w last) or --layout euroc (w first)"
 
 
@@ -93,15 +93,14 @@ def read_number_lines(path: Path) -> NumberLines | None:
 
 
 def read_number_table(
-    path: Path, layout: Layout | None, *, plane: str | None
+    path: Path, layout: Layout | None, *, plane: str
 ) -> tuple[Layout, RawTable] | None:
     """Read lines of numbers as a table with canonical headers; None for another file.
 
     Args:
         path: The file, a table of any kind or lines of numbers.
         layout: The layout that the user gives; None to find it by header and count of numbers.
-        plane: Axes of the floor, None for xy; a body that is upright on it shows whether w is first
-            or last.
+        plane: Axes of the floor; a body that is upright on it shows whether w is first or last.
 
     Returns:
         The layout, and columns t_s (of KITTI numbers of rows), x_m, y_m, z_m, qx, qy, qz and qw.
@@ -121,61 +120,63 @@ def read_number_table(
     if numbers is None and (layout is not None or not has_table_name(path)):
         raise DataError("has a line of words; expected lines of 8 (TUM) or 12 (KITTI) numbers, or "
                         "a table with a suffix such as .csv", file=path)  # fmt: skip
-    return None if numbers is None else _ordered(path, numbers, layout, plane or "xy")
-
-
-def _ordered(
-    path: Path, numbers: NumberLines, given: Layout | None, plane: str
-) -> tuple[Layout, RawTable]:
-    """Name the columns by the layout given, by the header, or by their number."""
-    count = numbers.rows.shape[1]
-    if given is Layout.KITTI or (given is None and count == _MATRIX and not numbers.header):
-        return Layout.KITTI, _of_matrices(path, numbers)
-    named = {} if given else named_columns(numbers.header)
-    units = {}
-    if set(_TUM) <= set(named):
-        place = {name: numbers.header.index(named[name]) for name in _TUM}
+    if numbers is None:
+        return None
+    named = {} if layout else named_columns(numbers.header)
+    if set(COLUMNS[Layout.TUM]) <= set(named):
+        place = {name: numbers.header.index(named[name]) for name in COLUMNS[Layout.TUM]}
         layout = Layout.EUROC if place["qw"] < place["qx"] else Layout.TUM
-        units = {name: unit for name in _TUM if (unit := unit_in_header(named[name]))}
+        units = {name: unit for name in place if (unit := unit_in_header(named[name]))}
     else:
-        layout = given or (Layout.TUM if count == len(_TUM) and not numbers.separated else None)
-        if layout is None or count < len(_TUM) or (layout is Layout.TUM and count > len(_TUM)):
-            raise _unknown(path, count, given)
-        names = _EUROC if layout is Layout.EUROC else _TUM
-        place = {name: names.index(name) for name in names}
-        if given is None:
-            _require_w_last(path, numbers.rows[:, 4:], plane)
-    rows = numbers.rows[:, [place[name] for name in _TUM]]
-    if layout is Layout.EUROC and np.all(rows[:, 0] == np.round(rows[:, 0])):
+        layout, units = _layout_of_count(path, numbers, layout, plane), {}
+        place = {name: i for i, name in enumerate(COLUMNS[layout])}
+    columns = {name: numbers.rows[:, i] for name, i in place.items()}
+    if layout is Layout.KITTI:
+        columns, units = _of_matrices(path, numbers.line, columns), {"t_s": "s"}
+    if layout is Layout.EUROC and np.all(columns["t_s"] == np.round(columns["t_s"])):
         units.setdefault("t_s", "ns")
-    return layout, _table(path, rows, numbers.line, units)
+    series = {name: pd.Series(values) for name, values in columns.items()}
+    return layout, RawTable(path, series, header_line=numbers.line - 1, units=units)
 
 
-def _table(path: Path, rows: Array, line: int, units: dict[str, str]) -> RawTable:
-    columns = {name: pd.Series(values) for name, values in zip(_TUM, rows.T, strict=True)}
-    return RawTable(path, columns, header_line=line - 1, units=units)
+def _layout_of_count(path: Path, numbers: NumberLines, given: Layout | None, plane: str) -> Layout:
+    """Return the layout that is given, else the only one of as many numbers; check their count."""
+    count = numbers.rows.shape[1]
+    layout = given
+    if given is None and count == len(COLUMNS[Layout.KITTI]) and not numbers.header:
+        layout = Layout.KITTI
+    elif given is None and count == len(COLUMNS[Layout.TUM]) and not numbers.separated:
+        layout = Layout.TUM
+        _require_w_last(path, numbers.rows[:, 4:], plane)
+    expected = len(COLUMNS[layout]) if layout else 0
+    if layout and (count == expected or (layout is Layout.EUROC and count > expected)):
+        return layout
+    raise DataError(
+        f"has {count} numbers a line; expected {f'{expected} ({layout})' if layout else '8 or 12'}"
+        f": 8 (TUM) between white space, 12 (KITTI), or a line above that names them (t, x, y, "
+        f"perhaps yaw, or z and qx, qy, qz, qw); of 8 or more without it {_PLACE_OF_W}",
+        file=path,
+    )
 
 
-def _of_matrices(path: Path, numbers: NumberLines) -> RawTable:
-    """Convert the first three rows of 4x4 matrices to positions and quaternions."""
-    if numbers.rows.shape[1] != _MATRIX:
-        raise _unknown(path, numbers.rows.shape[1], Layout.KITTI)
-    matrix = numbers.rows.reshape(-1, 3, 4)
-    rotation = matrix[:, :, :3]
+def _of_matrices(path: Path, line: int, columns: dict[str, Array]) -> dict[str, Array]:
+    """Convert rotation matrices to quaternions; times are numbers of rows."""
+    rotation = np.column_stack([columns[name] for name in _ROTATION]).reshape(-1, 3, 3)
     with np.errstate(invalid="ignore", over="ignore"):
         product = np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)
         right = np.abs(product).max(axis=(1, 2)) <= _ROTATION_TOLERANCE
         right &= np.linalg.det(rotation) > 0
-    if not right.all():
-        raise RawTable(path, {}, header_line=numbers.line - 1).fault(
-            "numbers 1-3, 5-7 and 9-11 are no rotation matrix; expected lines of a KITTI "
-            "trajectory, the first three rows of a 4x4 matrix",
-            "rotation",
-            int(np.argmin(right)),
-        )
-    quaternion = Rotation.from_matrix(rotation).as_quat()
-    rows = np.column_stack((np.arange(len(matrix), dtype=float), matrix[:, :, 3], quaternion))
-    return _table(path, rows, numbers.line, {"t_s": "s"})
+    RawTable(path, {}, header_line=line - 1).require(
+        "rotation", right,
+        lambda _: "numbers 1-3, 5-7 and 9-11 are no rotation matrix; expected lines of a KITTI "
+        "trajectory, the first three rows of a 4x4 matrix",
+    )  # fmt: skip
+    quaternion = Rotation.from_matrix(rotation).as_quat().T
+    return {
+        "t_s": np.arange(len(rotation), dtype=float),
+        **{name: columns[name] for name in _POSITION},
+        **dict(zip(QUATERNION, quaternion, strict=True)),
+    }
 
 
 def _require_w_last(path: Path, quaternion: Array, plane: str) -> None:
@@ -187,13 +188,3 @@ def _require_w_last(path: Path, quaternion: Array, plane: str) -> None:
             f"last is w as in TUM files; {_PLACE_OF_W}",
             file=path,
         )
-
-
-def _unknown(path: Path, count: int, given: Layout | None) -> DataError:
-    problem = (
-        f"expected {_EXPECTED[given]}, or a table with a header line (t, x, y, perhaps yaw, or z "
-        "and qx, qy, qz, qw)"
-    )
-    if count in (len(_TUM), 17) and given is None:  # 17: EuRoC with speeds and biases
-        problem = f"no header names them, so that the place of w is open; {_PLACE_OF_W}"
-    return DataError(f"has {count} numbers a line; {problem}", file=path)

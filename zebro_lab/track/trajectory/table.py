@@ -3,7 +3,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,7 @@ FASTEST: Final = 20.0
 _LEGS_OF_PATH: Final = 21  # so few that noise does not lengthen the path
 _ALIGNED: Final = 0.9  # alignment of heading and travel above which a unit fits the path
 _CLEARLY, _LEAST_LACK = 5.0, 0.05  # alignment that radians lack more than degrees: factor, least
-_UNITS: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+_UNITS: Final = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _SINCE_1970: Final = (6.3e8, 4.2e9)
 """Seconds since 1970 of the years 1990 to 2102: no other unit has such numbers for these years."""
 _GAPS: Final = (1e-6, 1e4)
@@ -75,34 +75,25 @@ def named_columns(headers: Sequence[str]) -> Mapping[str, str]:
     return found
 
 
-class TableColumns(NamedTuple):
-    """Columns of a path in a table.
+def read_table_columns(
+    table: RawTable, mapping: Columns
+) -> tuple[dict[str, Array], RawTable, list[str]]:
+    """Convert the columns of a trajectory to SI, and check units, stamps and quaternions.
 
-    Attributes:
-        columns: Columns in SI by canonical name, without empty rows and those that repeat a stamp,
-            shape (n,) each.
-        notes: Notes on rows and stamps, one line each.
-        table: The rows of the table that they are.
-    """
-
-    columns: Mapping[str, Array]
-    notes: tuple[str, ...]
-    table: RawTable
-
-
-def read_table_columns(table: RawTable, mapping: Columns) -> TableColumns:
-    """Convert the columns of a trajectory to SI, and check its stamps.
-
-    Rows without any number of a pose are gaps, as motion-capture systems write them: left out.
+    Rows without any number of a pose are gaps, as motion-capture systems write them: left out, as
+    is all but the first row of a stamp.
 
     Args:
         table: The table.
         mapping: Headers and units of its columns, see `recognised`; time, x and y are needed.
 
+    Returns:
+        Columns by canonical name, shape (n,) each; the rows of the table that they are; and notes.
+
     Raises:
-        DataError: Time, x or y is missing, a cell is no finite number, or a stamp is earlier than
-            the one before or, in many rows, repeated with another pose, or headings without a unit
-            fit the path in degrees alone.
+        DataError: Time, x or y is missing, a cell is no finite number, a unit that nobody states
+            cannot be SI, or a stamp is earlier than the one before or, in many rows, repeated with
+            another pose.
     """
     mapping = recognised(table, mapping)
     table, notes = _with_poses(table, mapping)
@@ -118,15 +109,29 @@ def read_table_columns(table: RawTable, mapping: Columns) -> TableColumns:
                 table, name, what=f"{name} of the trajectory", advice=advice
             )
     notes += [*mapping.conversions(table), *_in_seconds(table, mapping, columns)]
-    _require_radians(table, mapping, columns)
-    notes += _require_metres(table, mapping, columns)
-    kept, repeated = _kept_stamps(table, mapping, columns)
-    columns = {name: column[kept] for name, column in columns.items()}
-    table = table.part(kept)
+    _require_units(table, mapping, columns)
+    kept, repeated = _first_of_stamps(table, mapping, columns)
+    table, columns = table.part(kept), {name: column[kept] for name, column in columns.items()}
+    table.require_increasing(mapping.mapped["t_s"].name, columns["t_s"])
     if set(QUATERNION) <= set(columns):
         quaternion = np.column_stack([columns[name] for name in QUATERNION])
         require_unit_quaternions(table, mapping, quaternion)
-    return TableColumns(columns, (*notes, *repeated), table)
+    return columns, table, [*notes, *repeated]
+
+
+def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, list[str]]:
+    """Return the rows that `[rows] keep` asks for and that hold a pose, and a note on the rest."""
+    if mapping.keep:
+        table = table.part(kept_rows(table, mapping.keep, where=mapping.where))
+    headers = [mapping.mapped[name].name for name in POSE_UNITS if name != "t_s"]
+    cells = [table.columns[header].isna() for header in headers if header in table.columns]
+    empty = np.all(cells, axis=0) if cells else np.zeros(len(table), dtype=bool)
+    if not empty.any() or empty.all():
+        return table, []
+    first = table.row(int(np.argmax(empty)))
+    left_out = counted(int(empty.sum()), "empty pose")
+    note = f"{table.path.name}: {left_out} left out, the first in row {first}"
+    return table.part(np.flatnonzero(~empty)), [note]
 
 
 def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) -> list[str]:
@@ -136,113 +141,69 @@ def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) ->
         DataError: Poses are hours, or less than a microsecond, apart, so that the unit must be
             another.
     """
-    time, t = mapping.mapped["t_s"], columns["t_s"]
+    time, t, notes = mapping.mapped["t_s"], columns["t_s"], []
     stated = time.in_unit_of(table, "s")
-    notes = []
     if stated.factor == 1.0 and time.name not in table.units:
         low, high = _SINCE_1970
         for unit, factor in _UNITS.items():
-            if low <= float(np.abs(t).max(initial=0.0)) * factor <= high and factor != 1.0:
+            if low <= float(np.abs(t).max(initial=0.0)) * factor <= high:
                 columns["t_s"] = t = t * factor
                 notes = [f"{table.path.name}: stamps are read as times since 1970 in {unit}"]
     gap = abs(float(np.median(np.diff(t)))) if len(t) > 1 else 0.0
     if gap and not _GAPS[0] < gap < _GAPS[1]:
-        raise table.fault(
+        problem = (
             f"stamps are {gap:.3g} s apart, if they are in {stated.unit}; convert them, or name "
-            "their unit in a header such as 'timestamp [ms]'",
-            time.name,
-            0,
+            "their unit in a header such as 'timestamp [ms]'"
         )
+        raise table.fault(problem, time.name, 0)
     return notes
 
 
-def _kept_stamps(
-    table: RawTable, mapping: Columns, columns: Mapping[str, Array]
-) -> tuple[NDArray[np.intp], list[str]]:
-    """Return the rows to keep, the first of each stamp, and a note on those that are left out.
-
-    Raises:
-        DataError: A stamp is earlier than the one before, or more than one in a hundred rows repeat
-            a stamp with another pose.
-    """
-    t, header = columns["t_s"], mapping.mapped["t_s"].name
-    poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
-    step = np.diff(t, prepend=-np.inf)
-    if np.any(step < 0):
-        at = int(np.argmax(step < 0))
-        raise table.fault(
-            f"the stamp {float(t[at])!r} s is earlier than {float(t[at - 1])!r} s of row "
-            f"{table.row(at - 1)}; expected increasing stamps: sort the rows by time, or, if "
-            "another recording begins here, make a file of each",
-            header,
-            at,
-        )
-    same = step == 0
-    moved = same & np.any(np.diff(poses, axis=0, prepend=poses[:1]) != 0, axis=1)
-    at, count = int(np.argmax(moved)), int(moved.sum())
-    other = f"{counted(count, 'row')} with another pose than the row before with the same stamp"
-    if count > _MOST_REPEATED * len(t) + 1:
-        problem = f"{other}; expected increasing stamps: write them with more digits"
-        raise table.fault(problem, header, at)
-    notes = []
-    if same.any():
-        rows = counted(int(same.sum()), "row")
-        notes = [f"{table.path.name}: {rows} left out whose stamp is that of the row before"]
-    if count:
-        notes.append(f"{table.path.name}: left out, {other}, the first row {table.row(at)}")
-    return np.flatnonzero(~same), notes
-
-
-def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, list[str]]:
-    """Return the rows that `[rows] keep` asks for and that hold a pose, and a note on the rest."""
-    if mapping.keep:
-        table = table.part(kept_rows(table, mapping.keep, where=mapping.where))
-    names = [name for name in POSE_UNITS if name != "t_s" and name in mapping.mapped]
-    headers = [mapping.mapped[name].name for name in names]
-    cells = [table.columns[header].isna() for header in headers if header in table.columns]
-    empty = np.all(cells, axis=0) if cells else np.zeros(len(table), dtype=bool)
-    if not empty.any() or empty.all():
-        return table, []
-    gaps = int(np.count_nonzero(np.diff(empty.astype(int), prepend=0) > 0))
-    where = f"in {counted(gaps, 'gap')}, the first from row {table.row(int(np.argmax(empty)))}"
-    note = f"{table.path.name}: {counted(int(empty.sum()), 'empty pose')} left out {where}"
-    return table.part(np.flatnonzero(~empty)), [note]
-
-
-def _require_radians(table: RawTable, mapping: Columns, columns: Mapping[str, Array]) -> None:
-    heading = mapping.mapped["yaw_rad"]
-    if "yaw_rad" not in columns or heading.unit_stated or heading.name in table.units:
-        return
+def _require_units(table: RawTable, mapping: Columns, columns: Mapping[str, Array]) -> None:
+    """Raise `DataError` if headings or positions whose unit nobody states cannot be in SI."""
     position = np.column_stack([columns["x_m"], columns["y_m"]])
-    if are_degrees(columns["yaw_rad"], position):
+    heading, east = mapping.mapped["yaw_rad"], mapping.mapped["x_m"]
+    unstated = not heading.unit_stated and heading.name not in table.units
+    if "yaw_rad" in columns and unstated and are_degrees(columns["yaw_rad"], position):
         largest = float(np.abs(columns["yaw_rad"]).max())
-        found = (
-            f"the heading goes up to {largest:.4g} rad and fits the direction of travel only in "
-            "degrees"
-        )
+        found = f"the heading goes up to {largest:.4g} rad and fits the path only in degrees"
         raise mapping.unstated(table, "yaw_rad", found, unit="deg")
-
-
-def _require_metres(table: RawTable, mapping: Columns, columns: Mapping[str, Array]) -> list[str]:
-    """Return a note on positions whose unit nobody states: they are taken in metres.
-
-    Raises:
-        DataError: In metres they would be those of no robot.
-    """
-    east, t = mapping.mapped["x_m"], columns["t_s"]
-    if east.name == "x_m" or mapping.states_unit(table, "x_m"):
-        return []
-    at = np.linspace(0, len(t) - 1, _LEGS_OF_PATH).astype(int)
-    position = np.column_stack([columns["x_m"], columns["y_m"]])[at]
-    way = float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum())
-    speed = way / float(np.ptp(t) or np.inf)
-    if speed > FASTEST:
+    at = np.linspace(0, len(position) - 1, _LEGS_OF_PATH).astype(int)
+    way = float(np.linalg.norm(np.diff(position[at], axis=0), axis=1).sum())
+    speed = way / float(np.ptp(columns["t_s"]) or np.inf)
+    if speed > FASTEST and east.name != "x_m" and not mapping.states_unit(table, "x_m"):
         found = (
             f"the path goes at {speed:.3g} m/s, if positions are in m; expected at most "
             f"{FASTEST:g} m/s where their unit is not stated"
         )
         raise mapping.unstated(table, "x_m", found, unit="mm", others="y_m")
-    return [f"positions ('{east.name}', …) are taken in m, since no unit of them is stated"]
+
+
+def _first_of_stamps(
+    table: RawTable, mapping: Columns, columns: Mapping[str, Array]
+) -> tuple[NDArray[np.intp], list[str]]:
+    """Return the first row of each stamp, and a note on those that are left out.
+
+    Raises:
+        DataError: More than one in a hundred rows repeat a stamp with another pose.
+    """
+    t = columns["t_s"]
+    poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
+    same = np.diff(t, prepend=-np.inf) == 0
+    moved = same & np.any(np.diff(poses, axis=0, prepend=poses[:1]) != 0, axis=1)
+    count = int(moved.sum())
+    if count > _MOST_REPEATED * len(t) + 1:
+        problem = (
+            f"{counted(count, 'row')} with another pose than the row before with the same stamp; "
+            "expected increasing stamps: write them with more digits"
+        )
+        raise table.fault(problem, mapping.mapped["t_s"].name, int(np.argmax(moved)))
+    other = f", {count} with another pose, row {table.row(int(np.argmax(moved)))} first"
+    note = (
+        f"{table.path.name}: {counted(int(same.sum()), 'row')} left out whose stamp is that of the "
+        f"row before{other * bool(count)}"
+    )
+    return np.flatnonzero(~same), [note] * bool(same.any())
 
 
 def recognised(table: RawTable, mapping: Columns) -> Columns:

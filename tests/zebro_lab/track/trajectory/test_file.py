@@ -41,12 +41,10 @@ def test_tum_is_known_by_its_content_whatever_the_name(tmp_path, name, separator
 
 def test_commas_are_read_where_the_header_names_the_quaternion(tmp_path):
     text = tum(T, POSITION, ROTATION, ",")
-    last = "# timestamp,tx,ty,tz,qx,qy,qz,qw\n"
-    same(read(written(tmp_path / "a.csv", last + text)))
-    same(read(written(tmp_path / "b.csv", last[2:] + text)))  # a table
-    with pytest.raises(DataError, match=r"8 numbers .*--layout tum"):
-        read(written(tmp_path / "c.csv", text))
-    same(read(tmp_path / "c.csv", layout=(Layout.TUM,)))
+    names = "# timestamp,tx,ty,tz,qx,qy,qz,qw\n"
+    same(read(written(tmp_path / "a.csv", names + text)))
+    same(read(written(tmp_path / "b.csv", names[2:] + text)))  # a table
+    same(read(written(tmp_path / "c.csv", text), layout=(Layout.TUM,)))
 
 
 @pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
@@ -66,11 +64,9 @@ def test_euroc_has_w_first_and_nanoseconds(tmp_path, t, header):
 def test_euroc_with_speeds_and_biases_is_read(tmp_path):
     lines = euroc(T, POSITION, ROTATION).splitlines()
     more = ["," + ",".join(f"v{i} [m s^-1]" for i in range(9)), *[",0" * 9] * (len(lines) - 1)]
-    text = "\n".join(map("".join, zip(lines, more, strict=True)))
-    same(read(written(tmp_path / "data.csv", text)))
-    bare = written(tmp_path / "bare.csv", "\n".join(text.splitlines()[1:]))
-    with pytest.raises(DataError, match=r"17 numbers .*--layout tum"):
-        read(bare)
+    whole = [*map("".join, zip(lines, more, strict=True))]
+    same(read(written(tmp_path / "data.csv", "\n".join(whole))))
+    bare = written(tmp_path / "bare.csv", "\n".join(whole[1:]))
     same(read(bare, layout=(Layout.EUROC,)))
 
 
@@ -108,14 +104,10 @@ def test_kitti_has_no_times_but_those_of_another_file(tmp_path):
         read(file, times=times)
 
 
-def test_a_path_across_the_plane_and_a_rotation_out_of_it_are_noted(tmp_path):
+def test_a_path_across_the_plane_is_noted(tmp_path):
     file = written(tmp_path / "00.txt", kitti(POSITION, ROTATION))
     assert any("across the plane xz" in note for note in read(file).notes)
     assert not any("across" in note for note in read(file, plane=Plane.XY).notes)
-    assert not read(written(tmp_path / "a.txt", tum(T, POSITION, FLAT))).notes
-    tilted = Rotation.from_euler("x", (0.3 * T / T[-1])[:, None]) * FLAT
-    notes = read(written(tmp_path / "a.txt", tum(T, POSITION, tilted))).notes
-    assert any("17.2 deg" in note for note in notes)
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".txt", ".parquet", ".csv.gz"])
@@ -140,9 +132,6 @@ def test_a_path_too_fast_for_metres_is_asked_about_unless_they_are_stated(tmp_pa
         assert read(written(tmp_path / "a.csv", stated + rows)).poses.position[-1, 0] == 4350
     milli = read(written(tmp_path / "a.csv", "t,x [mm],y [mm]\n" + rows))
     assert milli.poses.position[-1, 0] == pytest.approx(4.35)
-    slow = read(written(tmp_path / "a.csv", "t,x,y\n0,0,0\n1,1,0\n2,2,0\n"))
-    assert any("taken in m" in note for note in slow.notes)
-    assert not any("taken in m" in note for note in milli.notes)
 
 
 def test_a_flat_table_has_no_place_in_space(tmp_path):
@@ -157,14 +146,13 @@ def test_a_flat_table_has_no_place_in_space(tmp_path):
 LINES = tum(UNIX + T, POSITION, ROTATION).splitlines()
 
 
-def test_repeated_stamps_are_left_out_and_counted(tmp_path):
-    again = read(written(tmp_path / "a.txt", "\n".join([*LINES, LINES[-1]])))
-    assert "1 row left out" in same(again, UNIX + T).notes[0]
+def test_of_a_repeated_stamp_the_first_pose_is_read_and_the_others_counted(tmp_path):
     other = LINES[-1].split()
     other[2] = f"{float(other[2]) + 1e-8:.17g}"
-    moved = read(written(tmp_path / "a.txt", "\n".join([*LINES, " ".join(other)])))
-    assert "another pose" in same(moved, UNIX + T).notes[1]
-    assert "row 61" in moved.notes[1]
+    text = "\n".join([*LINES, LINES[-1], " ".join(other)])
+    note = same(read(written(tmp_path / "a.txt", text)), UNIX + T).notes[0]
+    assert "2 rows left out" in note
+    assert "1 with another pose, row 62 first" in note
 
 
 @pytest.mark.parametrize(
@@ -172,7 +160,7 @@ def test_repeated_stamps_are_left_out_and_counted(tmp_path):
     [
         (tum(np.floor(UNIX + T), POSITION, ROTATION), {}, r"row 2 .line 2.*54 rows.*digits"),
         ("\n".join(["# c", *LINES[:5], LINES[6], LINES[5], *LINES[7:]]), {},
-         r"row 7 .line 8.*1400000000.5 s is earlier than 1400000000.6 s of row 6"),
+         r"row 7 .line 8.*time goes from 1400000001 to 1400000000 s.*make a file of each"),
         (tum(1e9 * T, POSITION, ROTATION), {}, r"row 1 .*1e\+08 s apart, if they are in s"),
         (tum(np.arange(60), POSITION, FLAT), {"layout": (Layout.EUROC,)}, "1e-09 s apart.* in ns"),
         ("# t [mm], x, y, z, qx, qy, qz, qw\n" + tum(T, POSITION, ROTATION, ","), {},
@@ -186,9 +174,8 @@ def test_what_cannot_be_times_or_lengths_is_refused_with_row_and_unit(tmp_path, 
         read(written(tmp_path / "a.txt", text), **how)
 
 
-def test_rows_are_chosen_from_tables_alone_and_that_is_said(tmp_path):
+def test_rows_are_chosen_from_tables_alone(tmp_path):
     (tmp_path / "columns.toml").write_text('[track.rows]\nkeep = ["x < 5"]\n')
     file = written(tmp_path / "a.tum", tum(T, POSITION, ROTATION))
     mapping, _ = read_mapped_columns("track", file, None, MAPPED_UNITS)
-    trajectory = same(read_trajectory(file, TrajectoryRequest(), mapping=mapping))
-    assert "[track.rows] keep" in trajectory.notes[-1]
+    same(read_trajectory(file, TrajectoryRequest(), mapping=mapping))

@@ -29,8 +29,8 @@ def expect(found: ForeignTrack, *, path=PATH) -> None:
 def test_odometry_and_stamped_poses_are_read(written, tmp_path):
     found = read(write_bag(tmp_path / "bag", written(T, PATH), storage="mcap"))
     expect(found)
-    np.testing.assert_allclose(found.more["z_m"], 0.06)
-    assert not found.with_covariance  # zeros: unknown
+    np.testing.assert_allclose(found.columns["z_m"], 0.06)
+    assert "cov_xx" not in found.columns  # zeros: unknown
 
 
 COVARIANCE = 1e-4 * (np.diag(np.arange(2.0, 8.0)) + 0.5)

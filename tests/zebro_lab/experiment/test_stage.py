@@ -5,7 +5,9 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -112,20 +114,33 @@ class Rig:
         # A socket holds bytes back while a busy machine delays their reader; a terminal drops them.
         self.server = PortServer(twin, as_socket=True)
 
-    def start(self, plan, *options):
-        command = [
-            sys.executable, "-c", "from zebro_lab.main import main; main()", "rig", "run",
-            str(plan), "--rig", f"rig-board-serial@{self.server.port}", "--data", str(self.data),
-            *options,
-        ]  # fmt: skip
+    def arguments(self, plan):
+        rig = f"rig-board-serial@{self.server.port}"
+        return ["rig", "run", str(plan), "--rig", rig, "--data", str(self.data)]
+
+    def start(self, plan):
+        main = "from zebro_lab.main import main; main()"
+        command = [sys.executable, "-c", main, *self.arguments(plan)]
         return subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
 
-    def serve(self, process, until, *, longest=60.0):
+    @contextmanager
+    def operated(self):
+        """Do what the prompts say, in a thread, while the body runs."""
+        done = threading.Event()
+        operator = threading.Thread(target=self.serve, args=[done.is_set])
+        operator.start()
+        try:
+            yield
+        finally:
+            done.set()
+            operator.join()
+
+    def serve(self, until, *, longest=60.0):
         """Do what the prompts say until something holds."""
         end, before = time.monotonic() + longest, None
-        while time.monotonic() < end and process.poll() is None and not until():
+        while time.monotonic() < end and not until():
             try:
                 status = command_run(self.data, "status")
                 again, before = status == before, status
@@ -165,15 +180,14 @@ class Rig:
     ],
 )
 def test_a_signal_leaves_motors_at_rest_valid_runs_and_a_run_to_resume(
-    lab, plan, tmp_path, signals, reason
+    lab, plan, run_command, tmp_path, signals, reason
 ):
-    one_load = plan.read_text().replace("loads = [4.0, 8.0]", "loads = [8.0]")
-    plan.write_text(one_load)
+    plan.write_text(plan.read_text().replace("loads = [4.0, 8.0]", "loads = [8.0]"))
     rig = Rig(tmp_path / "data")
     with rig.server:
         process = rig.start(plan)
         try:
-            rig.serve(process, lambda: rig.closed() >= 1)
+            rig.serve(lambda: rig.closed() >= 1 or process.poll() is not None)
             assert process.poll() is None, process.communicate()[0]
             for number in signals:
                 os.kill(process.pid, number)
@@ -187,18 +201,12 @@ def test_a_signal_leaves_motors_at_rest_valid_runs_and_a_run_to_resume(
         assert events == ([] if reason is None else [reason]), output
         for folder in find_runs(rig.data):
             read_slip_rig_run(folder)  # whole, or salvaged
-        done = rig.closed()
-        assert 1 <= done < 3
+        assert 1 <= rig.closed() < 3
         if reason in {"safe stop: SIGHUP", "safe stop: Ctrl-C"}:
             return  # SIGTERM's safe stop, resumed below, differs in its name alone
         options = ["--resume"] + ["--reset-emergency"] * (len(signals) == 3)
-        process = rig.start(plan, *options)
-        try:
-            rig.serve(process, lambda: False)
-            output, _ = process.communicate(timeout=60)
-        finally:
-            process.kill()
-            process.wait()
-        assert process.returncode == 0, output
+        with rig.operated():
+            resumed = run_command(*rig.arguments(plan), *options)
+        assert resumed.code == 0, resumed
         assert rig.closed() == 3
         assert read_rig_data([rig.data]).samples.n_runs == 3

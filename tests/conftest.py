@@ -74,6 +74,19 @@ def blank_pictures(monkeypatch) -> None:
     monkeypatch.setattr(Figure, "savefig", savefig)
 
 
+@pytest.fixture
+def coarse_pictures(monkeypatch) -> None:
+    """Write figures of few pixels, for claims that need pictures and do not look into them."""
+    from matplotlib.figure import Figure
+
+    drawn = Figure.savefig
+
+    def savefig(figure, target, **options):
+        drawn(figure, target, **(options | {"dpi": 15}))
+
+    monkeypatch.setattr(Figure, "savefig", savefig)
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item, call):
     """Turn a skip into a failure where the reference data exists: nothing excuses it there."""

@@ -4,6 +4,7 @@
 import json
 
 import pandas as pd
+import pytest
 
 from support.bundled_walk import WALK
 from support.other_labs import RIG_COLUMNS, write_rig_table, write_walk_tables
@@ -12,6 +13,7 @@ from support.quick_fits import fit_quickly
 FEW_STEPS = ("--law", "coulomb-stribeck", "--max-steps", 100)
 
 
+@pytest.mark.usefixtures("coarse_pictures")
 def test_tables_of_others_end_in_a_judged_prediction_on_one_page(command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     fit_quickly(monkeypatch)

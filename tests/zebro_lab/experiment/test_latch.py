@@ -15,6 +15,13 @@ from zebro_lab.experiment.latch import LATCH_FILE, EmergencyLatch
 from zebro_lab.files.errors import NotFound, SettingsError, ZebroLabError
 
 
+@pytest.fixture(name="plan")
+def _plan(plan):
+    """Return a plan of three points, after two of which is stopped."""
+    plan.write_text(plan.read_text().replace("loads = [4.0, 8.0]", "loads = [8.0]"))
+    return plan
+
+
 def stop_by_emergency(lab, plan, data, reason="planted", action=lambda: None):
     control = Control()
 

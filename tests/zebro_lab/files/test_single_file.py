@@ -18,6 +18,8 @@ from zebro_lab.runs.plot_stage import PLOT, plot_run
 from zebro_lab.track.annotate_stage import draw_grid
 from zebro_lab.track.camera.stage import LENS
 
+pytestmark = pytest.mark.usefixtures("coarse_pictures")
+
 
 @pytest.fixture
 def run(tmp_path) -> Path:

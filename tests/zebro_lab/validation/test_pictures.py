@@ -19,6 +19,8 @@ from zebro_lab.validation.pictures import draw_validation
 from zebro_lab.validation.predicted_walks import ShownRun
 from zebro_lab.walk.prediction_file import PredictionFile, WalkedPath
 
+pytestmark = pytest.mark.usefixtures("coarse_pictures")
+
 
 @pytest.fixture
 def track(tmp_path):

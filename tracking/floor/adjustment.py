@@ -142,7 +142,7 @@ class Adjustment:
         size, own = self._size, self._lens_slot
         whole = np.zeros((size + 9 - root.shape[1], size))
         slots = {stand_name(k): slice(6 * k, 6 * k + 6) for k in range(len(self.views))}
-        slots |= {mark_name(key): slot for key, slot in self._mark_slots().items()}
+        slots |= {mark_name(key): slot for key, slot in self._mark_slots.items()}
         whole[: own.start, : own.start] = np.eye(own.start)
         whole[own.start : own.start + 9, own] = root
         whole[-2:, -2:] = np.eye(2)
@@ -222,6 +222,7 @@ class Adjustment:
     def _lens_root(self) -> Array:
         return SharedErrors(self.camera.covariance, {}).root
 
+    @cached_property
     def _mark_slots(self) -> dict[int | str, slice]:
         start, slots = 6 * len(self.views), {}
         for key, mark in self.floor.marks.items():
@@ -231,7 +232,7 @@ class Adjustment:
 
     @property
     def _lens_slot(self) -> slice:
-        start = max(slot.stop for slot in self._mark_slots().values())
+        start = max(slot.stop for slot in self._mark_slots.values())
         return slice(start, start + self._lens_root.shape[1])
 
     @property
@@ -247,7 +248,7 @@ class Adjustment:
         normal, gradient, cost, count = np.zeros((size, size)), np.zeros(size), 0.0, 0
         for index, (pose, view) in enumerate(zip(found.poses, self.views, strict=True)):
             for key, r, J in self._residuals(found, view, pose, index):
-                weight = np.linalg.inv(self._pixel_covariance(view, key))
+                weight = self._pixel_weights[index, key]
                 normal += J.T @ weight @ J
                 gradient += J.T @ weight @ r
                 cost += float(r @ weight @ r)
@@ -258,7 +259,7 @@ class Adjustment:
         self, found: Adjusted, view: FloorView, pose: CameraPose, index: int
     ) -> list[tuple[int | str, Array, Array]]:
         """Compute for each mark its residual (2n,) and the Jacobian (2n, size) of its pixels."""
-        camera, slots, root = self.lens(found), self._mark_slots(), self._lens_root
+        camera, slots, root = self.lens(found), self._mark_slots, self._lens_root
         computed = []
         for key in seen_keys(self.floor, view):
             mark = found.floor.marks[key]
@@ -304,10 +305,19 @@ class Adjustment:
         growth = edge_growth(view.pixels[key]).ravel()
         return covariance + self.edge_sd**2 * np.outer(growth, growth)
 
+    @cached_property
+    def _pixel_weights(self) -> dict[tuple[int, int | str], Array]:
+        """Inverse covariance of the pixels by number of the view and key of the mark."""
+        return {
+            (index, key): np.linalg.inv(self._pixel_covariance(view, key))
+            for index, view in enumerate(self.views)
+            for key in seen_keys(self.floor, view)
+        }
+
     def _by_tape(self, floor: FloorMap) -> "_Part":
         size = self._size
         normal, gradient, cost, count = np.zeros((size, size)), np.zeros(size), 0.0, 0
-        for key, slot in self._mark_slots().items():
+        for key, slot in self._mark_slots.items():
             weight = self.floor.marks[key].prior_sd ** -2
             pull = self._from_tape(floor, key)
             normal[slot, slot] += np.diag(weight)
@@ -334,8 +344,7 @@ class Adjustment:
 
     def _moved(self, found: Adjusted, step: Array) -> Adjusted:
         marks = {
-            key: found.floor.marks[key].moved(step[slot])
-            for key, slot in self._mark_slots().items()
+            key: found.floor.marks[key].moved(step[slot]) for key, slot in self._mark_slots.items()
         }
         by_stand = step[: 6 * len(found.poses)].reshape(-1, 2, 3)
         poses = [

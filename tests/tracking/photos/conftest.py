@@ -64,14 +64,14 @@ def photographed(folder: Path, look: RobotLook) -> tuple[Photo, ...]:
     return tuple(found)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def robot() -> MarkedRobot:
     """Return the robot as it was drawn."""
     marker = RobotMarker(0, SIDE, "4x4_50", (0.0, 0.0, DrawnRobotMarker().height))
     return MarkedRobot(marker, BodyPrior(HEIGHT, 5e-4))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def scene(robot) -> Scene:
     """Return what is known of the walk."""
     lens = Camera((DRAWN.width, DRAWN.height), DRAWN.matrix, np.array(DRAWN.distortion))
@@ -79,7 +79,7 @@ def scene(robot) -> Scene:
     return Scene(lens, FloorMap("4x4_50", tuple(markers)), robot.prior, robot)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def top(scene, photos) -> MarkedTop:
     """Click on the corners of the robot's top in the first photograph."""
     plate = TopPlate(0.176, 0.176, 0.0385)

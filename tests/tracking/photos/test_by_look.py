@@ -26,9 +26,14 @@ from tracking.shared import annotation_name
 TIMES = {"p0.png": (0.0, 0.0), "p1.png": (2.0, 0.0)}
 
 
-def test_the_robot_is_found_where_it_was(scene, photos, walk, top):
+@pytest.fixture(scope="module")
+def found(scene, photos, top):
+    """Track the robot of two photographs by its top in the first."""
     bare = replace(scene, robot=None, tops=(top,))
-    found = track_by_look(bare, photos[:2], times=TIMES, gap=None, workers=1, progress=NoProgress())
+    return track_by_look(bare, photos[:2], times=TIMES, gap=None, workers=1, progress=NoProgress())
+
+
+def test_the_robot_is_found_where_it_was(found, walk):
     np.testing.assert_allclose(found.track.poses[:, :2], walk[:2, :2], atol=4e-3)
 
 
@@ -81,16 +86,17 @@ def test_clicks_that_no_pose_of_the_top_explains_are_told(scene, photos, top):
 
 
 def test_clicks_that_are_off_move_the_whole_track_and_the_covariance_says_so(
-    scene, photos, walk, top
+    found, scene, photos, top
 ):
-    bare = replace(scene, robot=None, tops=(top,))
-    run = {"times": TIMES, "gap": None, "workers": 1, "progress": NoProgress()}
-    right = track_by_look(bare, photos[:2], **run).track
+    right = found.track
     c, s = np.cos(0.03), np.sin(0.03)
     middle = np.mean(top.corners_px, axis=0)
     turned = (np.subtract(top.corners_px, middle) @ [[c, -s], [s, c]]) + middle + [0.8, 0.0]
     off = replace(top, corners_px=tuple(map(tuple, turned)))
-    wrong = track_by_look(replace(bare, tops=(off,)), photos[:2], **run).track
+    moved_top = replace(scene, robot=None, tops=(off,))
+    wrong = track_by_look(
+        moved_top, photos[:2], times=TIMES, gap=None, workers=1, progress=NoProgress()
+    ).track
     moved = [relative(a, b) for a, b in zip(right.poses, wrong.poses, strict=True)]
     assert np.all(np.abs(moved[0] - moved[1]) < [1e-3, 1e-3, 6e-3])  # alike, on the body
     assert abs(moved[0][2]) > 0.02

@@ -131,5 +131,6 @@ def _shrunk_covariance(away: Array, weights: Array, whole: Array) -> Array:
 def _log_gaussian(away: Array, covariance: Array) -> Array:
     """Compute the log density of a Gaussian, but for a constant, at points (n, d) less its mean."""
     root = np.linalg.cholesky(covariance)
-    scaled = solve_triangular(root, away.T, lower=True)
-    return -0.5 * np.sum(scaled**2, axis=0) - np.log(np.diag(root)).sum()
+    # A product takes a third of the time of solving for as many points.
+    scaled = away @ solve_triangular(root, np.eye(len(root)), lower=True).T
+    return -0.5 * np.einsum("ni,ni->n", scaled, scaled) - np.log(np.diag(root)).sum()

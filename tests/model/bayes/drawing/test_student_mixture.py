@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 import numpy as np
 import pytest
-from scipy.stats import multivariate_t
+from scipy.stats import multivariate_normal, multivariate_t
 
-from model.bayes.drawing.student_mixture import StudentMixture, fit_mixture
+from model.bayes.drawing.student_mixture import StudentMixture, _log_gaussian, fit_mixture
 
 ONE = StudentMixture(np.ones(1), np.zeros((1, 2)), np.eye(2)[None], np.array([9.0]))
 FAR = StudentMixture(np.ones(1), np.full((1, 2), 40.0), 4 * np.eye(2)[None], np.array([9.0]))
@@ -64,3 +64,11 @@ def test_a_part_of_few_draws_is_not_narrower_than_they_can_tell():
     assert fitted.weights.min() == pytest.approx(3 / 200, rel=0.01)
     for scale in fitted.scales:
         assert np.linalg.eigvalsh(scale).min() > 0.1
+
+
+def test_the_density_that_weighs_parts_is_a_gaussian_s():
+    covariance = np.array([[1.0, 0.8, 0.0], [0.8, 2.0, -0.5], [0.0, -0.5, 0.3]])
+    away = np.random.default_rng(0).standard_normal((50, 3))
+    expected = multivariate_normal(cov=covariance).logpdf(away)
+    found = _log_gaussian(away, covariance) - 1.5 * np.log(2 * np.pi)
+    np.testing.assert_allclose(found, expected, rtol=1e-12)

@@ -76,12 +76,13 @@ def blank_pictures(monkeypatch) -> None:
 
 @pytest.fixture
 def coarse_pictures(monkeypatch) -> None:
-    """Write figures of few pixels, for claims that need pictures and do not look into them."""
+    """Write figures of few pixels, not laid out, for claims that do not look into them."""
     from matplotlib.figure import Figure
 
     drawn = Figure.savefig
 
     def savefig(figure, target, **options):
+        figure.set_layout_engine("none")
         drawn(figure, target, **(options | {"dpi": 15}))
 
     monkeypatch.setattr(Figure, "savefig", savefig)

@@ -90,18 +90,20 @@ def open_photos(
 
     Raises:
         NotFound: `origin` does not exist.
-        SettingsError: A video is given together with an interval, a table of times or a clock.
+        SettingsError: A video is given together with an interval, a table of times or a clock, or
+            photographs with a step between frames.
         DataError: The folder holds only the photograph of the clock, or frames of a video cannot be
             written to the temporary folder.
         TrackingError: The folder has no photograph, times are missing, or a file is unreadable.
         TrackStopped: A stop was requested.
     """
+    is_video = origin.suffix.lower() in VIDEOS and not origin.is_dir()
+    _require_meant_for(request, is_video=is_video)
     if origin.is_dir():
         yield _of_folder(origin, request)
     elif not origin.is_file():
         raise NotFound(f"{origin}: no such folder, video or picture; working in {Path.cwd()}")
-    elif origin.suffix.lower() in VIDEOS:
-        _require_no_times(request)
+    elif is_video:
         with TemporaryDirectory(prefix="zebro-lab-") as folder:
             yield _of_video(origin, Path(folder), request.frame_step, frames, progress)
     else:
@@ -287,13 +289,17 @@ def _of_video(
     return PhotoSequence(tuple(photos), times, None, video)
 
 
-def _require_no_times(request: TimeRequest) -> None:
-    given = {
-        "--interval": request.interval, "--times": request.table, "--clock": request.clock
-    }  # fmt: skip
+def _require_meant_for(request: TimeRequest, *, is_video: bool) -> None:
+    if not is_video:
+        given, reason = {"--every": request.every}, "photographs, which are all taken"
+    else:
+        given = {
+            "--interval": request.interval, "--times": request.table, "--clock": request.clock
+        }  # fmt: skip
+        reason = "a video, whose frames have their times"
     for key, value in given.items():
         if value is not None:
-            raise SettingsError("leave out for a video, whose frames have their times", key=key)
+            raise SettingsError(f"leave out for {reason}", key=key)
 
 
 def _simulated(path: Path) -> str | None:

@@ -167,7 +167,7 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
         found.columns,
         tum=found.tum,
         source=result.source,
-        settings=_settings(inputs),
+        settings=_settings(inputs, sequence),
         inputs=file_hashes([*request.named, *photos]),
         report=_report(result),
     ) as draft:
@@ -222,14 +222,14 @@ def _parts(position: float, yaw: float) -> Mapping[str, float]:
     return {"position": round(position, 4), "yaw": round(yaw, 4)}
 
 
-def _settings(inputs: TrackInputs) -> Mapping[str, object]:
+def _settings(inputs: TrackInputs, sequence: PhotoSequence) -> Mapping[str, object]:
     request, robot = inputs.request, inputs.scene.robot
     marker = None if robot is None else robot.marker
     return {
         "photos": request.photos.name,
         "marker": marker and MarkerPrint(marker.dictionary, marker.marker_id, marker.side).text,
         "interval": request.times.interval,
-        "every": request.times.frame_step,
+        "every": request.times.frame_step if sequence.is_video else None,
         "start": None if request.start is None else request.start.isoformat(),
         "body_height": request.stated_height,
         "mean_height_sd": request.stated_mean_height_sd,

@@ -119,6 +119,16 @@ def test_a_video_takes_no_times_of_others(tmp_path):
         pass
 
 
+@pytest.mark.parametrize("name", ["", "walk.jpg"])
+def test_photographs_take_no_step_between_frames(tmp_path, name):
+    (tmp_path / "walk.jpg").touch()
+    with (
+        pytest.raises(SettingsError, match="--every: leave out for photographs"),
+        open_photos(tmp_path / name, TimeRequest(every=0.1)),
+    ):
+        pass
+
+
 def test_exposures_need_an_interval():
     np.testing.assert_allclose(exposure_times(("a#1", "a#2"), TimeRequest(interval=3.0)).t, [0, 3])
     with pytest.raises(SettingsError, match="2 exposures"):

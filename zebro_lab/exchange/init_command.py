@@ -68,13 +68,12 @@ def init(
 def _to_check(written: "WrittenColumns") -> list[str]:
     """Return advice on what a header does not show."""
     found = set(written.guesses)
-    doubts = sum(len(guess.doubts) for guess in written.guesses.values())
     advice = ["the names, units and signs above; comments in columns.toml explain them"]
     if not found:
         advice = ["no column was recognised; map each by hand in columns.toml, which lists all "
                   "columns of the table at its end"]  # fmt: skip
-    if doubts:
-        advice = [f'values that end in "?" in columns.toml, {doubts}: correct each and delete its '
+    if written.doubts:
+        advice = [f'values that end in "?" in columns.toml, {written.doubts}: correct each and delete its '
                   '"?"; until then no command reads the table']  # fmt: skip
     needed = [set(names.split(" or ")) for names in _NEEDED[written.kind]]
     missing = [" or ".join(sorted(names)) for names in needed if not names & found]

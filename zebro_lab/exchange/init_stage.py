@@ -16,7 +16,7 @@ from zebro_lab.files.opening import read_text
 from zebro_lab.ground.ground_file import TEMPLATE
 from zebro_lab.robot.robot_file import RobotFile, render_robot_file
 from zebro_lab.tables.columns import COLUMNS_FILE, RIG
-from zebro_lab.tables.columns_sections import is_sectioned
+from zebro_lab.tables.columns_sections import DOUBT, is_sectioned
 from zebro_lab.tables.table_files import read_table_file
 
 Kind = Literal["rig", "legs", "imu", "track"]
@@ -30,12 +30,14 @@ class WrittenColumns:
         file: The `columns.toml`.
         kind: Kind of the table.
         guesses: Guessed columns by canonical name.
+        doubts: Number of values that end in "?".
         notes: Notes on how the table was read, one line each.
     """
 
     file: Path
     kind: str
     guesses: Mapping[str, ColumnGuess]
+    doubts: int
     notes: tuple[str, ...] = ()
 
 
@@ -79,7 +81,9 @@ def write_columns_template(
         sheet=sheet, sectioned=found != RIG or bool(present), appended=bool(present),
     )  # fmt: skip
     atomic_write_text(target, f"{present.rstrip()}\n\n{text}" if present else text)
-    return WrittenColumns(target, found, guesses, table.notes)
+    values = [line.partition("  # ")[0] for line in text.splitlines() if line[:1] != "#"]
+    doubts = sum(value.count(f'{DOUBT}"') for value in values)
+    return WrittenColumns(target, found, guesses, doubts, table.notes)
 
 
 def _require_no_ros_log(file: Path) -> None:

@@ -2,7 +2,9 @@
 """`--json` of commands prints one document with the keys that docs/formats.md lists."""
 
 import json
+import re
 import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -15,6 +17,16 @@ from support.written_runs import make_run
 
 pytestmark = pytest.mark.usefixtures("blank_pictures")
 
+FORMATS = Path(__file__).parents[2] / "docs/formats.md"
+
+
+def documented(command):
+    """Return what the row of a command in the table of docs/formats.md names."""
+    table = FORMATS.read_text(encoding="utf-8").partition("\n## JSON documents of commands")[2]
+    rows = [row.split("|", 2)[1:] for row in table.splitlines() if row.startswith("| ")]
+    (keys,) = [keys for commands, keys in rows if f"`{command}`" in commands]
+    return set(re.findall("`([^`]+)`", keys))
+
 
 def document(ended, command, keys, *, code=0):
     """Return the document of a command that ended with a code, which must be all of its stdout."""
@@ -22,6 +34,7 @@ def document(ended, command, keys, *, code=0):
     found = json.loads(ended.out)
     assert (found["command"], found["exit_code"]) == (command, code)
     assert set(found) - {"simulated"} == {"command", "exit_code"} | keys
+    assert keys <= documented(command)
     return found
 
 

@@ -73,8 +73,8 @@ def _to_check(written: "WrittenColumns") -> list[str]:
         advice = ["no column was recognised; map each by hand in columns.toml, which lists all "
                   "columns of the table at its end"]  # fmt: skip
     if written.doubts:
-        advice = [f'values that end in "?" in columns.toml, {written.doubts}: correct each and delete its '
-                  '"?"; until then no command reads the table']  # fmt: skip
+        advice = [f'values that end in "?" in columns.toml, {written.doubts}: correct each and '
+                  'delete its "?"; until then no command reads the table']  # fmt: skip
     needed = [set(names.split(" or ")) for names in _NEEDED[written.kind]]
     missing = [" or ".join(sorted(names)) for names in needed if not names & found]
     if missing:

@@ -6,11 +6,13 @@ python -m benchmarks.mutations BEFORE [AFTER] [--n 60] [--seed 1] [--timeout S]
 BEFORE and AFTER are folders or commits; without AFTER it is BEFORE. Mutations are drawn by seed
 from the functions that both have, and tried in BEFORE until `--n` of them are noticed there, by the
 test module of the changed module's name or those of its folder. Each of these is then tried in
-AFTER, in the end by all tests that are not long; a mutation that none notices survives.
+AFTER, in the end by all tests that are not long; a mutation that none notices survives. Only tests
+that pass without a mutation count: this environment needs what BEFORE and AFTER depend on.
 """
 
 import argparse
 import ast
+import compileall
 import copy
 import os
 import shutil
@@ -35,6 +37,8 @@ LEFT_OUT = shutil.ignore_patterns(
     ".git", ".venv*", "__pycache__", ".*_cache", ".hypothesis", "demo", "*.nbi", "*.nbc"
 )
 PASSED, NO_TESTS = 0, 5  # pytest's exit codes
+ALL = Path("tests")
+UNCHANGED = "unchanged"
 KINDS = ("comparison", "sign", "constant", "index")
 COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq,
@@ -161,6 +165,7 @@ class Copy:
         self._root = root
         self._timeout = timeout
         self._functions = functions_by_tree(self.checkout)
+        self._sound: dict[Path, bool] = {}
 
     def place(self, mutation: Mutation) -> str:
         """Return where the function of a mutation is."""
@@ -174,28 +179,41 @@ class Copy:
             by_all: Whether all tests run in the end, after those of the module and of its folder.
         """
         module, function = self._functions[mutation.same]
-        file = self._root / module.path
-        file.write_text(text_with(module, function, mutated(function, mutation)), encoding="utf-8")
-        try:
-            mirror = mirror_of(module)
-            for tests in (mirror, mirror.parent, *([Path("tests")] if by_all else [])):
-                if (self._root / tests).exists() and self._fails(tests, loops=module.name):
+        text = text_with(module, function, mutated(function, mutation))
+        # numba keeps what it compiled when a function that it calls changes in another file.
+        loops = module.name if "compiled" in module.text else UNCHANGED
+        file, mirror = self._root / module.path, mirror_of(module)
+        for tests in (mirror, mirror.parent, *([ALL] if by_all else [])):
+            if not self._pass_unchanged(tests):
+                continue
+            file.write_text(text, encoding="utf-8")
+            try:
+                if self._fail(tests, loops=loops):
                     return str(tests)
-        finally:
-            file.write_text(module.text, encoding="utf-8")
+            finally:
+                file.write_text(module.text, encoding="utf-8")
         return ""
 
-    def _fails(self, tests: Path, *, loops: str) -> bool:
+    def _pass_unchanged(self, tests: Path) -> bool:
+        """Return whether tests exist and pass without a mutation; each is run once for that."""
+        if tests not in self._sound:
+            exist = (self._root / tests).exists()
+            self._sound[tests] = exist and not self._fail(tests, loops=UNCHANGED)
+        return self._sound[tests]
+
+    def _fail(self, tests: Path, *, loops: str) -> bool:
         """Run tests that are not long; return whether any fails, or they take too long.
 
         Args:
-            tests: Test module or folder, from the top of the copy.
-            loops: Name for a folder of compiled loops: numba keeps what it compiled when a
-                function that it calls changes in another file.
+            tests: Test module, a folder for the modules in it, or `ALL`.
+            loops: Name for a folder of compiled loops.
         """
-        whole = tests == Path("tests")
+        whole, place = tests == ALL, self._root / tests
+        files = sorted(place.glob("test_*.py")) if place.is_dir() and not whole else [place]
+        if not files:
+            return False
         command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
-                   "-m", "not long", *(["-n", "2"] if whole else []), str(tests)]  # fmt: skip
+                   "-m", "not long", *(["-n", "2"] if whole else []), *map(str, files)]  # fmt: skip
         path = os.pathsep.join([str(self._root), os.environ.get("PYTHONPATH", "")])
         environment = os.environ | {
             "PYTHONPATH": path.rstrip(os.pathsep), "PYTHONDONTWRITEBYTECODE": "1",
@@ -227,6 +245,7 @@ def main(arguments: list[str]) -> int:
         for name in [each for each in (asked.before, asked.after) if each]:
             root = Path(stack.enter_context(TemporaryDirectory(prefix="mutated-"))) / "checkout"
             shutil.copytree(stack.enter_context(open_checkout(name)), root, ignore=LEFT_OUT)
+            compileall.compile_dir(root, quiet=2)
             copies.append(Copy(root, timeout=asked.timeout))
         before, after = copies[0], copies[-1]
         for each in drawn(before.checkout, after.checkout, np.random.default_rng(asked.seed)):

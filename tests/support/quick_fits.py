@@ -29,8 +29,7 @@ def few_starts() -> Iterator[None]:
 
 
 def fit_quickly(patch: pytest.MonkeyPatch) -> None:
-    """Let `calibrate-slip` take blocks of 30, two ensembles, and few starts, steps and draws."""
-    patch.setattr(*NO_PRIOR_STARTS)
+    """Let `calibrate-slip` take blocks of 30, two ensembles, and few steps and draws."""
     for name, value in FEW.items():
         patch.setattr(f"model.bayes.calibrate.{name}", value)
     sampler = stage._sampler

@@ -18,7 +18,7 @@ import xarray as xr
 from model.bayes.calibration import Calibration
 from model.bayes.drawing.sampler import Chains
 from model.errors import DomainError
-from support.quick_fits import fit_quickly
+from support.quick_fits import NO_PRIOR_STARTS, fit_quickly
 from zebro_lab.calibration import stage
 from zebro_lab.calibration.folder import read_slip
 from zebro_lab.calibration.request import CalibrationRequest
@@ -64,6 +64,7 @@ def short_fits() -> Iterator[pytest.MonkeyPatch]:
     """Judge from 10 kept steps on, and draw nothing: these claims need no converged fit."""
     with pytest.MonkeyPatch.context() as patch:
         fit_quickly(patch)
+        patch.setattr(*NO_PRIOR_STARTS)
         patch.setattr(stage, "draw_calibration", lambda *_: None)
         patch.setattr(stage, "CHECKPOINT_SECONDS", 1e9)  # a slow machine would keep a fit
         yield patch

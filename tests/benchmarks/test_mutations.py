@@ -54,7 +54,8 @@ def test_a_mutation_changes_one_node_of_the_body(text):
 
 
 def write(root, home, tests):
-    for name, text in {f"model/{home}": CHOICE, f"tests/model/test_{home}": tests}.items():
+    files = {"model/__init__.py": "", f"model/{home}": CHOICE, f"tests/model/test_{home}": tests}
+    for name, text in files.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(text)
 
@@ -67,7 +68,7 @@ def test_a_function_that_moved_is_drawn_and_one_that_changed_is_not(tmp_path):
     changed = Module(after.modules["model.after"].path, CHOICE.replace("a > b", "b < a"))
     after = Checkout(after.root, {"model.after": changed})
     assert list(drawn(before, after, np.random.default_rng(1))) == []
-    assert read_modules(tmp_path / "before").keys() == {"model.before"}
+    assert read_modules(tmp_path / "before").keys() == {"model", "model.before"}
 
 
 @pytest.mark.long

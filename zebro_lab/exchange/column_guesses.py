@@ -30,16 +30,13 @@ _SIGNED: Final = {
     *(f"{name}_{axis}" for name in ("rate", "force") for axis in "xyz"),
 }  # fmt: skip
 """Columns whose sign is a convention that no table shows."""
-_ROS = re.compile(
+_IN_OUR_FRAME = re.compile(
     r"(.*[./_])?(orientation|angular_velocity|linear_acceleration)[./_][xyzw]"
-    r"|(.*[./])?position[./][xyz]"
+    r"|(.*[./])?position[./][xyz]|p_RS_R_[xyz].*|t[xyz]"
 )
-_UPRIGHT = re.compile(r"p_RS_R_[xyz].*|t[xyz]")
-"""Positions with z up and y to the left of x, beside those of ROS: of EuRoC and TUM."""
-_AXES = ("x_m", "y_m", "z_m")
+"""Columns in SI, with z up and y to the left of x: of ROS, EuRoC and TUM."""
 _EVERYBODYS: Final = frozenset(("t", "x", "y", "z", "roll", "pitch", "yaw"))
 """Canonical names that other programs use, too, in other units."""
-_MOST_SET_POINTS = 200
 _FORCES = ("force_x", "force_y", "force_z")
 
 
@@ -113,7 +110,7 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
         if fitting:
             guesses[canonical] = _guess(table, canonical, kind, fitting, ours=ours)
             taken.update((fitting[0], guesses[canonical].nanoseconds or fitting[0]))
-    return _of_one_mind(_in_multiples_of_g(table, _with_axes(_whole_quaternion(guesses))))
+    return _of_one_mind(_in_multiples_of_g(table, _whole_quaternion(guesses)))
 
 
 def _in_multiples_of_g(table: RawTable, guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
@@ -137,24 +134,6 @@ def _whole_quaternion(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]
     return {name: guess for name, guess in guesses.items() if name not in QUATERNION}
 
 
-def _with_axes(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
-    """Return the guesses with a doubt of the axes of a path in space: y may be up."""
-    if "z_m" not in guesses:
-        return guesses
-    doubt = "the file does not say which axis is up; if not z, give import --track the --plane"
-    return {
-        canonical: replace(guess, name_doubt=f"{guess.name_doubt}; {doubt}".lstrip("; "))
-        if canonical in _AXES and not _is_upright(guess.name, canonical) else guess
-        for canonical, guess in guesses.items()
-    }  # fmt: skip
-
-
-def _is_upright(name: str, canonical: str) -> bool:
-    return is_canonical(name, canonical) or any(
-        pattern.fullmatch(name) is not None for pattern in (_ROS, _UPRIGHT)
-    )
-
-
 def _of_one_mind(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
     """Return the guesses with degrees for all angles whose unit is in doubt, if one has degrees."""
     angles = {
@@ -167,22 +146,6 @@ def _of_one_mind(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
         canonical: replace(guess, unit=replace(guess.unit, unit="deg"))
         for canonical, guess in angles.items() if guess.unit
     }  # fmt: skip
-
-
-def guess_set_points(table: RawTable) -> list[str]:
-    """Return headers of set-point columns: numbers that change, but at less than 10 % of the rows.
-
-    Columns with an empty cell, or with `_MOST_SET_POINTS` changes or more, are left out.
-    """
-    found = []
-    for name in table.columns:
-        numbers = numbers_or_none(table, name)
-        if numbers is None or np.isnan(numbers).any():
-            continue
-        changes = int(np.count_nonzero(np.diff(numbers)))
-        if 0 < changes < min(_MOST_SET_POINTS, len(numbers) // 10):
-            found.append(name)
-    return found
 
 
 def numbers_or_none(table: RawTable, name: str) -> Array | None:
@@ -242,7 +205,7 @@ def _guess(
     name, *others = fitting
     si_unit = UNITS[kind][canonical]
     own = is_canonical(name, canonical) and (ours or name not in _EVERYBODYS)
-    known = own or _ROS.fullmatch(name) is not None
+    known = own or _IN_OUR_FRAME.fullmatch(name) is not None
     nanoseconds = _nanoseconds(table, name) if si_unit == "s" else None
     others = [other for other in others if other != nanoseconds]
     if canonical == "traction_force" and not others:  # of a wheel the other way may be forward
@@ -259,7 +222,7 @@ def _guess(
         unit = UnitGuess(si_unit, "")
     if canonical in ANGLES and numbers is not None:
         numbers = numbers * factor_to_si(unit.unit, si_unit)  # to unwrap them
-    sign, sign_doubt = _sign(canonical, numbers, known=known or bool(_UPRIGHT.fullmatch(name)))
+    sign, sign_doubt = _sign(canonical, numbers, known=known)
     zero = "90 deg must be where the centre of the leg's arc is straight below the hip"
     return ColumnGuess(
         name, unit, sign, doubt, sign_doubt, zero if canonical in ANGLES and not known else "",

@@ -7,12 +7,7 @@ from typing import Final
 import numpy as np
 import tomlkit
 
-from zebro_lab.exchange.column_guesses import (
-    UNITS,
-    ColumnGuess,
-    guess_set_points,
-    numbers_or_none,
-)
+from zebro_lab.exchange.column_guesses import UNITS, ColumnGuess, numbers_or_none
 from zebro_lab.tables.columns import COLUMNS_FILE, IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.columns_sections import DOUBT
 from zebro_lab.tables.raw_table import RawTable
@@ -37,6 +32,12 @@ _CONSTANTS: Final = """
 [{at}constants]  # numbers in SI, or texts with a unit
 # radius_leg = "35 mm"    # needed for slip from the disc speeds
 # radius_ground = "120 mm"
+"""
+_RUNS: Final = """
+[{at}runs]  # what separates runs, one of these; default: a column 'run', else files
+# by = ["SET_POINT"]  # columns that change from run to run; needed where time restarts in the file
+# gap = "1 s"         # a pause longer than this starts a run
+# each_row = true     # every row is the mean of a trial
 """
 _ROWS: Final = """
 [{at}rows]  # only rows that meet all of these are read; names with < > = ! stand in backticks
@@ -93,8 +94,8 @@ def render_columns(
     text += f"\nsheet = {_quoted(sheet)}\n" if sheet is not None else ""
     text += "".join(_column(table, name, kind, guesses, at) for name in UNITS[kind])
     if kind == RIG:
-        column = _bare(next(iter(table.columns)))
-        text += _CONSTANTS.format(at=at) + _runs(table, guesses, at)
+        column = _quoted(f"`{next(iter(table.columns))}`")[1:-1]
+        text += _CONSTANTS.format(at=at) + _RUNS.format(at=at)
         text += _ROWS.format(at=at, column=column) + _LOAD_CELL.format(at=at)
     listed = "".join(
         f"#   {_quoted(name)}: {_summary(table, name)}{f', in {unit}' if unit else ''}\n"
@@ -149,38 +150,12 @@ def _meaning(name: str, kind: str) -> str:
     return _MEANINGS.get(name, "of the body, in its frame" if kind == IMU else "covariance")
 
 
-def _runs(table: RawTable, guesses: Mapping[str, ColumnGuess], at: str) -> str:
-    restarts = "t" in guesses and _runs_backwards(table, guesses["t"].name)
-    doubt = DOUBT * restarts
-    by = ", ".join(_quoted(name + doubt) for name in guess_set_points(table))
-    # Without a rule such a file cannot be read at all, so a guess is better than a comment.
-    active = "" if restarts and by else "# "
-    by = by or _quoted("SET_POINT")
-    check = "  # CHECK: time restarts in the file" if restarts else ""
-    return (
-        f"\n[{at}runs]  # what separates runs, one of these; default: a column 'run', else files\n"
-        f"{active}by = [{by}]{check}\n"
-        '# gap = "1 s"      # a pause longer than this starts a run\n'
-        "# each_row = true  # every row is the mean of a trial\n"
-    )
-
-
-def _runs_backwards(table: RawTable, name: str) -> bool:
-    time = numbers_or_none(table, name)
-    return time is not None and bool((np.diff(time) < 0).any())
-
-
 def _summary(table: RawTable, name: str) -> str:
     numbers = numbers_or_none(table, name)
     if numbers is None:
         return f"first {_quoted(str(table.columns[name].iloc[0])[:40])}"
     low, high = np.nanmin(numbers), np.nanmax(numbers)
     return f"first {numbers[0]:.10g}, from {low:.10g} to {high:.10g}"
-
-
-def _bare(name: str) -> str:
-    quoted = _quoted(f"`{name}`")
-    return quoted[1:-1]
 
 
 def _quoted(text: str) -> str:

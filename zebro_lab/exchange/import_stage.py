@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab import`: convert files from other software to a run folder."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -111,8 +110,13 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     track, track_topic = (None, None) if request.track is None else _track(request.track, request)
     imu, imu_topic = (None, None) if request.imu is None else _imu(request.imu, request)
     require_used(request.topic, (legs_topic, imu_topic, track_topic))
-    start, zero, note = _start(request.start, *_period(legs, track))
-    track = None if track is None else track.since(zero - request.track_offset)
+    parts = {LEGS: legs, IMU: imu, TRACK: track}
+    t, file = next(_times(part) for part in (legs, track) if part is not None)
+    start, zero, notes = _start(request.start, float(t[0]), float(t[-1]), file)
+    for kind in (IMU, TRACK):
+        if legs is not None and (part := parts[kind]) is not None:
+            offset = request.track_offset if kind == TRACK else 0.0
+            _require_shared_time(t, kind, *_times(part), offset)
     suspected: tuple[str, ...] = ()
     if legs is not None:
         suspected = leg_warnings(
@@ -121,43 +125,17 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
             leg_offset=robot.robot.leg_offset,
             columns=legs.columns_file,
         )
-    manifest = _manifest(request, start, _sources(request, legs, imu, track))
-    walk = ImportedWalk(manifest, zero, legs, imu, track, robot, suspected)
-    parts = [legs.notes if legs else (), suspected, imu.notes if imu else (),
-             track.track.notes if track else ()]  # fmt: skip
-    if legs is not None:
-        _require_shared_time(legs.reference.t - zero, imu, track, zero)
-    return walk, (*note, *(line for part in parts for line in part))
-
-
-def _period(legs: LegLog | None, track: ForeignTrack | None) -> tuple[float, float, Path]:
-    """Return first and last time [s] and file of the legs, or of the track without legs."""
-    if legs is not None:
-        return float(legs.reference.t[0]), float(legs.reference.t[-1]), legs.files[0]
+    notes = (*notes, *(legs.notes if legs else ()), *suspected, *(imu.notes if imu else ()))
     if track is not None:
-        t = track.track.poses.t
-        return float(t[0]), float(t[-1]), track.track.file
-    return 0.0, 0.0, Path()
-
-
-def _sources(
-    request: ImportRequest, legs: LegLog | None, imu: ImuLog | None, track: ForeignTrack | None
-) -> dict[str, str]:
-    """Return the source of each stream of the log; that of the track where there is no log."""
+        track = track.since(zero - request.track_offset)
+        notes += track.track.notes
+    stated = {LEGS: (legs and legs.source, request.legs), IMU: (imu and imu.source, request.imu)}
     if legs is None:
-        stated = None if track is None else track.track.source
-        return {TRACK: stated_source(stated, request.track or Path())}
-    sources = {LEGS: stated_source(legs.source, request.legs or Path())}
-    if imu is not None:
-        sources[IMU] = stated_source(imu.source, request.imu or Path())
-    return sources
-
-
-def _manifest(request: ImportRequest, start: datetime, sources: Mapping[str, str]) -> RunManifest:
-    first = request.legs or request.track or Path()
-    return RunManifest(
+        stated = {TRACK: (track and track.track.source, request.track)}
+    sources = {kind: stated_source(source, file) for kind, (source, file) in stated.items() if file}
+    manifest = RunManifest(
         kind="walk",
-        label=request.label or table_stem(first) or first.stem,
+        label=request.label or table_stem(file) or file.stem,
         material=request.material,
         operator=request.operator,
         source=joined_source(list(sources.values())),
@@ -165,6 +143,16 @@ def _manifest(request: ImportRequest, start: datetime, sources: Mapping[str, str
         exit_status=IMPORTED,
         sources=sources,
     )
+    return ImportedWalk(manifest, zero, legs, imu, track, robot, suspected), notes
+
+
+def _times(part: LegLog | ImuLog | ForeignTrack) -> tuple[Array, Path]:
+    """Return the times of a file's rows, in the file's time [s], and the file."""
+    if isinstance(part, LegLog):
+        return part.reference.t, part.files[0]
+    if isinstance(part, ImuLog):
+        return part.t, part.files[0]
+    return part.track.poses.t, part.track.file
 
 
 def _legs(path: Path, request: ImportRequest) -> tuple[LegLog, str | None]:
@@ -223,39 +211,32 @@ def _start(
             key="--start",
         )
     if given is not None:
-        late = (f"--start {given.isoformat()} is in the future; is the year right?",)
-        return given.astimezone(UTC), 0.0, late if given > datetime.now(UTC) else ()
+        return given.astimezone(UTC), 0.0, ()
     if is_unix:
         return began, first, (f"times are read as Unix time: the run starts {began.isoformat()}",)
     note = f"the date of the recording is not known; time 0 is set to now, {start.isoformat()}"
     return start, 0.0, (f"{note} (give the date with --start)",)
 
 
-def _require_shared_time(
-    t: Array, imu: ImuLog | None, track: ForeignTrack | None, zero: float
-) -> None:
+def _require_shared_time(t: Array, kind: str, times: Array, file: Path, offset: float) -> None:
     """Raise `DataError` if IMU or track has no time in the leg log's range.
 
-    `t` and the track have times of the run, the IMU log times of the files, which are later by
-    `zero` [s]; the message has those of the files.
+    Args:
+        t: Times of the leg log, as in its file [s].
+        kind: Kind of the other file.
+        times: Times of its rows [s].
+        file: The other file.
+        offset: Time that is added to them [s].
     """
-    others = {
-        IMU: None if imu is None else (imu.t - zero, imu.files[0]),
-        TRACK: None if track is None else (track.track.poses.t, track.track.file),
-    }
-    for name, other in others.items():
-        if other is None or np.any((other[0] >= t[0]) & (other[0] <= t[-1])):
-            continue
-        times, file = other
-        first, last, start, end = format_distinct(*(times[[0, -1]] + zero), *(t[[0, -1]] + zero))
-        later = f"{t[0] - times[0]:.3f}".rstrip("0").rstrip(".")
-        offset = {
-            TRACK: f"add --track-offset {later}",
-            IMU: f"state offset = {later} in [{IMU}.columns.t] of {COLUMNS_FILE}",
-        }
-        raise DataError(
-            f"times of the {name} go from {first} to {last} s, those of the legs from {start} to "
-            f"{end} s: no second is shared; {offset[name]} where both start together, or bring "
-            "both files to one clock",
-            file=file,
-        )
+    if np.any((times + offset >= t[0]) & (times + offset <= t[-1])):
+        return
+    first, last, start, end = format_distinct(*times[[0, -1]] + offset, *t[[0, -1]])
+    later = f"{t[0] - times[0]:.3f}".rstrip("0").rstrip(".")
+    stated = f"state offset = {later} in [{IMU}.columns.t] of {COLUMNS_FILE}"
+    advice = f"add --track-offset {later}" if kind == TRACK else stated
+    raise DataError(
+        f"times of the {kind} go from {first} to {last} s, those of the legs from {start} to "
+        f"{end} s: no second is shared; {advice} where both start together, or bring both files to "
+        "one clock",
+        file=file,
+    )

@@ -19,7 +19,7 @@ from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.provenance import file_hashes
-from zebro_lab.mcap.log_topics import OTHER_FIELDS, TopicRows, read_topic
+from zebro_lab.mcap.log_topics import OTHER_FIELDS, read_topic
 from zebro_lab.robot.imu_log import ImuLog
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
@@ -148,7 +148,11 @@ def _rate(t: Array) -> float:
 
 
 _IMU_MESSAGE: Final = "sensor_msgs/msg/Imu"
-_VECTORS: Final = {"angular_velocity": "rate", "linear_acceleration": "force"}
+_FIELDS: Final = (
+    ("orientation", "q", "wxyz"),
+    ("angular_velocity", "rate_", "xyz"),
+    ("linear_acceleration", "force_", "xyz"),
+)
 
 
 def read_imu_messages(
@@ -171,9 +175,13 @@ def read_imu_messages(
             the messages mark the orientation as not measured.
     """
     found = read_topic(path, (_IMU_MESSAGE,), what="IMU messages", topic=topic, topics=topics)
+    columns = {"t": np.array(found.t)}
     with parsing(path, OTHER_FIELDS):
-        columns = _columns(found)
-    if columns is None:
+        for field, name, axes in _FIELDS:
+            if not any(_absent(each, field) for each in found.contents):
+                vectors = [getattr(message, field) for message in found.contents]
+                columns |= {f"{name}{a}": np.array([getattr(v, a) for v in vectors]) for a in axes}
+    if "qw" not in columns:
         raise DataError(
             f"has no orientation on topic {found.topic}: the first element of its covariance is "
             "-1; expected the orientation of the body: choose the topic of a filter that estimates "
@@ -183,21 +191,6 @@ def read_imu_messages(
     series = {name: pd.Series(values) for name, values in columns.items()}
     told = f"{path.name}: {found.told}"
     return RawTable(path, series, notes=(told, *found.notes)), found.topic
-
-
-def _columns(found: TopicRows) -> dict[str, Array] | None:
-    """Return the columns of an IMU table; None without orientation."""
-    if any(_absent(each, "orientation") for each in found.contents):
-        return None
-    columns: dict[str, Array] = {"t": np.array(found.t)}
-    for axis in "wxyz":
-        columns[f"q{axis}"] = np.array([getattr(m.orientation, axis) for m in found.contents])
-    for field, name in _VECTORS.items():
-        if not any(_absent(each, field) for each in found.contents):
-            for axis in "xyz":
-                values = [getattr(getattr(m, field), axis) for m in found.contents]
-                columns[f"{name}_{axis}"] = np.array(values)
-    return columns
 
 
 def _absent(message: Any, field: str) -> bool:

@@ -67,28 +67,16 @@ def init(
 
 def _to_check(written: "WrittenColumns") -> list[str]:
     """Return advice on what a header does not show."""
-    found = set(written.guesses)
     advice = ["the names, units and signs above; comments in columns.toml explain them"]
-    if not found:
+    if not written.guesses:
         advice = ["no column was recognised; map each by hand in columns.toml, which lists all "
                   "columns of the table at its end"]  # fmt: skip
     if written.doubts:
         advice = [f'values that end in "?" in columns.toml, {written.doubts}: correct each and '
                   'delete its "?"; until then no command reads the table']  # fmt: skip
-    needed = [set(names.split(" or ")) for names in _NEEDED[written.kind]]
-    missing = [" or ".join(sorted(names)) for names in needed if not names & found]
-    if missing:
-        advice.append(f"no column was found for {', '.join(missing)}: add [columns.NAME] for each")
     if written.kind == "rig":
         advice.append(
             "slip_ratio needs its definition, the speeds of both discs their radii in [constants], "
             "and [runs] what separates runs, where neither a column 'run' nor files do"
         )
     return advice
-
-
-_NEEDED = {
-    "rig": ("normal_force", "traction_force", "slip_ratio or omega_leg"),
-    "legs": ("t", *(f"theta{leg}" for leg in range(1, 7))), "imu": ("t",),
-    "track": ("t_s", "x_m", "y_m"),
-}  # fmt: skip

@@ -7,11 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from zebro_lab.exchange.column_guesses import (
-    guess_columns,
-    guess_kind,
-    guess_set_points,
-)
+from zebro_lab.exchange.column_guesses import guess_columns, guess_kind
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.tables.columns import IMU, TRACK
 from zebro_lab.tables.header_units import unit_in_header
@@ -93,15 +89,6 @@ def test_names_that_everybody_uses_are_in_si_only_beside_our_own():
     assert guess_columns(one("t", "x_m", "y_m", "yaw"), "track")["yaw_rad"].doubts == ()
 
 
-def test_set_point_is_what_changes_seldom():
-    steps, slope = np.repeat([1.0, 2.0, 3.0], 50), np.arange(150.0)
-    table = RawTable(
-        Path("a.csv"),
-        {"set": pd.Series(steps), "slope": pd.Series(slope), "one": pd.Series(np.ones(150))},
-    )
-    assert guess_set_points(table) == ["set"]
-
-
 @pytest.mark.parametrize(
     ("header", "canonical", "unit"),
     [
@@ -146,7 +133,6 @@ def test_a_quaternion_of_motion_capture_is_found_whole_or_not(tmp_path):
         table = RawTable(tmp_path / "take.csv", dict(values[[*names, *columns]].items()))
         guesses = guess_columns(table, TRACK)
         assert {name for name in guesses if name[0] == "q"} == found
-        assert "which axis is up" in guesses["y_m"].name_doubt
         assert not any(guesses[name].doubts for name in found)
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Files that others recorded become run folders that every stage reads like recorded ones."""
 
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 
 import numpy as np
 import pandas as pd
@@ -181,12 +181,6 @@ def test_half_a_request_is_refused(files, tmp_path, changes, message):
     named = {k: files / v if str(v).endswith((".csv", ".tum")) else v for k, v in changes.items()}
     with pytest.raises(SettingsError, match=message):
         taken(tmp_path, **named)
-
-
-def test_a_start_in_the_future_is_noted(files, tmp_path):
-    start = datetime.now(UTC) + timedelta(days=2)
-    notes = taken(tmp_path, legs=files / "legs.csv", start=start).notes
-    assert "is in the future; is the year right?" in notes[0]
 
 
 @pytest.mark.parametrize("first", [2.2e9, 5e11])

@@ -67,12 +67,6 @@ def test_rig_header_gives_units_and_prefers_speeds(tmp_path):
     assert '#   "operator": first "a"' in text
 
 
-def test_restarting_time_activates_the_set_points_as_runs(tmp_path):
-    text, columns = template(tmp_path, rig())
-    assert columns.runs.by == ("kappa_set", "omega_g")
-    assert "CHECK: time restarts" in text
-
-
 def test_a_template_is_refused_until_its_guesses_are_checked(tmp_path):
     text, _ = template(tmp_path, tyre())
     with pytest.raises(
@@ -115,9 +109,10 @@ def test_template_reads_its_data_once_the_gaps_are_filled(tmp_path):
     text, _ = template(tmp_path, rig())
     file = tmp_path / "columns.toml"
     text = text.replace('?"', '"')
-    for comment in ('# radius_leg = "35 mm" ', '# radius_ground = "120 mm"', '# source = "real"'):
+    for comment in ('# radius_leg = "35 mm" ', '# radius_ground = "120 mm"', '# source = "real"',
+                    '# by = ["SET_POINT"]'):  # fmt: skip
         assert comment in text
-        text = text.replace(comment, comment[2:])
+        text = text.replace(comment, comment[2:].replace("SET_POINT", "kappa_set"))
     file.write_text(text)
     data = read_rig_data([tmp_path])
     assert (len(data.samples), data.samples.n_runs, data.source) == (N, 2, "real")

@@ -36,7 +36,8 @@ def read_log_messages(
         take: Called with each message: topic, log time [ns], type and decoded content.
 
     Returns:
-        Why reading stopped before the end; None for a log read to its end.
+        Why reading stopped before the end, and in the message or description of what; None for a
+        log read to its end.
 
     Raises:
         NotFound: The file does not exist.
@@ -49,22 +50,26 @@ def read_log_messages(
     with open_file(path) as file:
         size = max(os.fstat(file.fileno()).st_size, 1)
         reader = StreamReader(file, validate_crcs=True, record_size_limit=size)
+        where = ""
         try:
             for record in reader.records:
                 if isinstance(record, Schema):
                     schemas[record.id] = record
                 elif isinstance(record, Channel) and record.schema_id in schemas:
                     schema = schemas[record.schema_id]
+                    where = f"the log's description of {schema.name}: "
                     decode = decoder(schema, record.topic)
                     if decode is not None:
                         decoders[record.id] = (record.topic, schema.name, decode)
                 elif isinstance(record, Message) and record.channel_id in decoders:
                     topic, name, decode = decoders[record.channel_id]
+                    where = f"a message of {topic}: "
                     take(topic, record.log_time, name, decode(record.data))
+                where = ""
         except InvalidMagic as error:
             raise DataError("is not an MCAP file", file=path) from error
         except ZebroLabError:
             raise
         except Exception as error:  # libraries answer damage with whatever went wrong inside them
-            return str(error) or "the file ends early"  # as the reader's EndOfFile, without words
+            return where + (str(error) or "the file ends early")  # EndOfFile has no words
     return None

@@ -10,12 +10,11 @@ from model.counted import counted
 from model.similar_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
-from zebro_lab.mcap.ros_log import LoggedMessage, read_typed_messages
+from zebro_lab.mcap.ros_log import LoggedMessage, read_messages
 
 OTHER_FIELDS: Final = "has messages with other fields than ROS defines"
 """What is wrong with a log whose description of a message is damaged, for `parsing`."""
 NANOSECOND: Final = 1e-9
-_MOST_LISTED: Final = 12
 _TOLD: Final = '--topic NAME, or topic = "NAME" in the file\'s section of a columns.toml'
 
 Parts = Iterable[tuple[str, Any, Any]]
@@ -78,7 +77,7 @@ def read_topic(
         SeveralTopics: It has several topics, and none is asked for.
         DataError: It cannot be read, or has no such message, or not the topic that is asked for.
     """
-    messages, damage = read_typed_messages(path, types)
+    messages, damage = read_messages(path, types)
     found: dict[str, list[tuple[float, str, Any]]] = {}
     with parsing(path, OTHER_FIELDS):
         for name, stamp, kind, content in _stamped(messages, parts):
@@ -87,7 +86,7 @@ def read_topic(
     t, kinds, contents = zip(*found[chosen], strict=True)
     notes = [] if damage is None else [f"{path.name} is incomplete ({damage})"]
     if len(found) > 1:
-        others = _listed(set(found) - {chosen})
+        others = ", ".join(sorted(set(found) - {chosen}))
         notes.append(f"{path.name}: {what} are taken from topic {chosen}, not from {others}")
     return TopicRows(chosen, kinds[0], t, contents, tuple(notes))
 
@@ -121,15 +120,7 @@ def _chosen(
         return topic
     fitting = [each for each in found if each in topics] or list(found)
     if len(fitting) > 1:
-        listed = _listed(fitting)
-        raise SeveralTopics(
-            f"has {what} on the topics {listed}; choose one with {_TOLD}", file=path
-        )
+        listed = ", ".join(sorted(fitting))
+        problem = f"has {what} on the topics {listed}; choose one with {_TOLD}"
+        raise SeveralTopics(problem, file=path)
     return fitting[0]
-
-
-def _listed(topics: Collection[str]) -> str:
-    """List topics; of many the first few, and how many more there are."""
-    shown = sorted(topics)[:_MOST_LISTED]
-    more = len(topics) - len(shown)
-    return ", ".join(shown) + (f" and {more} more" if more else "")

@@ -276,7 +276,7 @@ def _forces(forces: Forces) -> Mapping[str, Array]:
 
 def _events(log: Path, manifest: RunManifest) -> tuple[Event, ...]:
     start = epoch_ns(manifest.began)
-    messages, _ = read_messages(log, schema=LOG)
+    messages, _ = read_messages(log, (LOG,))
     return tuple(
         Event(1e-9 * (message.log_time - start), message.content.msg,
               message.content.level >= WARNING)

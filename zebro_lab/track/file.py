@@ -20,11 +20,11 @@ from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.folder import MANIFEST, TRACK_CSV, read_track_manifest
 from zebro_lab.track.joint_file import read_joint
+from zebro_lab.track.trajectory.table import COVARIANCE
 
 FEWEST = 3  # a start, which is not scored, and two poses to score
 _NAMES = (("t_s", "t"), ("x_m", "x"), ("y_m", "y"))
 _YAW = ("yaw_rad", "yaw")
-_COVARIANCE = ("cov_xx", "cov_xy", "cov_xyaw", "cov_yy", "cov_yyaw", "cov_yawyaw")
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def track_of_table(table: RawTable) -> TrackFile:
             file=file,
         )
     notes = [] if poses.has_yaw else [f"{file.name} has no column yaw_rad; yaw is not scored"]
-    has_covariance = all(name in table.columns for name in _COVARIANCE)
+    has_covariance = all(name in table.columns for name in COVARIANCE)
     if not has_covariance:
         notes.append(f"{file.name} has no full covariance; its poses are taken as exact")
     if has_covariance:
@@ -173,10 +173,7 @@ def _numbers(table: RawTable, name: str, si_unit: str) -> Array:
 
 
 def _covariance(table: RawTable) -> Array:
-    units = ("m^2", "m^2", "m rad", "m^2", "m rad", "rad^2")
-    upper = np.column_stack(
-        [_numbers(table, name, unit) for name, unit in zip(_COVARIANCE, units, strict=True)]
-    )
+    upper = np.column_stack([_numbers(table, *each) for each in COVARIANCE.items()])
     covariance = np.empty((len(upper), 3, 3))
     for k, (i, j) in enumerate(zip(*np.triu_indices(3), strict=True)):
         covariance[:, i, j] = covariance[:, j, i] = upper[:, k]

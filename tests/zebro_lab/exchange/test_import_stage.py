@@ -65,7 +65,7 @@ def test_suspected_leg_angles_are_warned_of_and_kept_with_the_run(tmp_path):
     pd.DataFrame(table).to_csv(tmp_path / "legs.csv", index=False)
     imported = taken(tmp_path, legs=tmp_path / "legs.csv")
     (line,) = [note for note in imported.notes if "legs 2, 4 and 6 turn backwards" in note]
-    events, _ = read_messages(imported.folder / "log.mcap", schema=LOG)
+    events, _ = read_messages(imported.folder / "log.mcap", (LOG,))
     assert [(each.content.level, each.content.msg) for each in events][1:] == [(WARNING, line)]
     (tmp_path / "robot.toml").write_text("[legs]\nsign = [1, -1, 1, -1, 1, -1]")
     right = taken(tmp_path, legs=tmp_path / "legs.csv", robot=tmp_path / "robot.toml", label="x")

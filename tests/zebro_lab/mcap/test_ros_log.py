@@ -11,7 +11,7 @@ from support.written_bags import BEGAN, imu, joints, write_bag, write_ros1_bag
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.names import is_ros_log
 from zebro_lab.mcap.log_writer import LOG, LOG_TEXT
-from zebro_lab.mcap.ros_log import read_bag, read_messages
+from zebro_lab.mcap.ros_log import read_messages
 
 
 def log_of(path, text, data=b"\0\1\0\0" + bytes(64)):
@@ -34,17 +34,18 @@ def log_of(path, text, data=b"\0\1\0\0" + bytes(64)):
 def test_a_damaged_description_is_damage_and_says_of_what(tmp_path, whole, damaged):
     assert whole in LOG_TEXT
     path = log_of(tmp_path / "log.mcap", LOG_TEXT.replace(whole, damaged, 1))
-    messages, damage = read_messages(path, schema=LOG)
+    messages, damage = read_messages(path, (LOG,))
     assert messages == []
     assert LOG in damage or "/events" in damage
 
 
 def test_a_message_cut_short_is_damage(tmp_path):
     path = log_of(tmp_path / "log.mcap", LOG_TEXT, data=b"\0\1\0\0")
-    messages, damage = read_messages(path, schema=LOG)
+    messages, damage = read_messages(path, (LOG,))
     assert (messages, "a message of /events" in damage) == ([], True)
 
 
+JOINTS = ("sensor_msgs/msg/JointState",)
 T = np.arange(0.0, 1.0, 0.1)
 THETA = T[:, None] + np.arange(6)
 
@@ -60,14 +61,14 @@ def positions(messages) -> np.ndarray:
 
 @pytest.mark.parametrize("part", ["", "walk.db3"])
 def test_a_bag_is_read_from_its_folder_and_from_its_file_alone(bag, part):
-    messages, damage = read_bag(bag / part, ("sensor_msgs/msg/JointState",))
+    messages, damage = read_messages(bag / part, JOINTS)
     assert damage is None
     np.testing.assert_array_equal(positions(messages), THETA)
     np.testing.assert_allclose([m.log_time / 1e9 for m in messages], BEGAN + T)
     assert {(m.topic, m.type) for m in messages} == {
         ("/joint_states", "sensor_msgs/msg/JointState")
     }
-    assert read_bag(bag / part, ("nav_msgs/msg/Odometry",)) == ([], None)
+    assert read_messages(bag / part, ("nav_msgs/msg/Odometry",)) == ([], None)
 
 
 def test_a_bag_that_was_copied_without_its_metadata_says_so(bag):
@@ -76,12 +77,12 @@ def test_a_bag_that_was_copied_without_its_metadata_says_so(bag):
     with pytest.raises(
         NotFound, match=r"walk: metadata.yaml of the bag is missing; copy .*reindex"
     ):
-        read_bag(bag, ("sensor_msgs/msg/JointState",))
+        read_messages(bag, JOINTS)
 
 
 def test_a_ros_1_bag_is_read_too(tmp_path):
     file = write_ros1_bag(tmp_path / "walk.bag", joints(T, THETA))
-    messages, damage = read_messages(file, schema="sensor_msgs/msg/JointState")
+    messages, damage = read_messages(file, JOINTS)
     assert damage is None
     np.testing.assert_array_equal(positions(messages), THETA)
 
@@ -89,14 +90,14 @@ def test_a_ros_1_bag_is_read_too(tmp_path):
 def test_a_folder_of_mcap_logs_needs_no_package(tmp_path, monkeypatch):
     folder = write_bag(tmp_path / "walk", joints(T, THETA), storage="mcap")
     monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
-    messages, _ = read_messages(folder, schema="sensor_msgs/msg/JointState")
+    messages, _ = read_messages(folder, JOINTS)
     np.testing.assert_array_equal(positions(messages), THETA)
 
 
 def test_a_missing_package_is_named_with_the_way_to_install_it(bag, monkeypatch):
     monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
     with pytest.raises(NotFound, match=r"pip install rosbags"):
-        read_bag(bag, ("sensor_msgs/msg/JointState",))
+        read_messages(bag, JOINTS)
 
 
 @pytest.mark.parametrize("noise", [b"", b"\0" * 5000, b"SQLite format 3\0" + b"\1" * 5000])
@@ -104,7 +105,7 @@ def test_what_is_no_bag_is_one_line(tmp_path, noise):
     for name in ("x.db3", "x.bag"):
         (tmp_path / name).write_bytes(noise)
         with pytest.raises(DataError, match="cannot be read as a ROS bag") as caught:
-            read_bag(tmp_path / name, ("sensor_msgs/msg/JointState",))
+            read_messages(tmp_path / name, JOINTS)
         assert "\n" not in str(caught.value)
 
 
@@ -115,5 +116,5 @@ def test_a_message_that_cannot_be_decoded_ends_the_reading(tmp_path):
     with sqlite3.connect(bag / "walk.db3") as database:
         database.execute("UPDATE messages SET data = x'00010000' WHERE id = 4")
     database.close()
-    messages, damage = read_bag(bag, ("sensor_msgs/msg/JointState",))
+    messages, damage = read_messages(bag, JOINTS)
     assert (len(messages), damage is None) == (3, False)

@@ -30,11 +30,12 @@ _SIGNED: Final = {
     *(f"{name}_{axis}" for name in ("rate", "force") for axis in "xyz"),
 }  # fmt: skip
 """Columns whose sign is a convention that no table shows."""
-_IN_OUR_FRAME = re.compile(
+_ROS = re.compile(
     r"(.*[./_])?(orientation|angular_velocity|linear_acceleration)[./_][xyzw]"
-    r"|(.*[./])?position[./][xyz]|p_RS_R_[xyz].*|t[xyz]"
+    r"|(.*[./])?position[./][xyz]"
 )
-"""Columns in SI, with z up and y to the left of x: of ROS, EuRoC and TUM."""
+_UPRIGHT = re.compile(r"p_RS_R_[xyz].*|t[xyz]")
+"""Positions with z up and y to the left of x, beside those of ROS: of EuRoC and TUM."""
 _EVERYBODYS: Final = frozenset(("t", "x", "y", "z", "roll", "pitch", "yaw"))
 """Canonical names that other programs use, too, in other units."""
 _FORCES = ("force_x", "force_y", "force_z")
@@ -110,7 +111,7 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
         if fitting:
             guesses[canonical] = _guess(table, canonical, kind, fitting, ours=ours)
             taken.update((fitting[0], guesses[canonical].nanoseconds or fitting[0]))
-    return _of_one_mind(_in_multiples_of_g(table, _whole_quaternion(guesses)))
+    return _of_one_mind(_in_multiples_of_g(table, _with_axes(_whole_quaternion(guesses))))
 
 
 def _in_multiples_of_g(table: RawTable, guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
@@ -132,6 +133,19 @@ def _whole_quaternion(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]
     if set(QUATERNION) <= guesses.keys():
         return guesses
     return {name: guess for name, guess in guesses.items() if name not in QUATERNION}
+
+
+def _with_axes(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
+    """Return the guesses with a doubt of the axes of a path in space: y may be up."""
+    doubt = "the file does not say which axis is up; if not z, give import --track the --plane"
+    for canonical in ("x_m", "y_m", "z_m") if "z_m" in guesses else ():
+        guess = guesses.get(canonical)
+        if guess and not is_canonical(guess.name, canonical) and not (
+            _ROS.fullmatch(guess.name) or _UPRIGHT.fullmatch(guess.name)
+        ):  # fmt: skip
+            doubts = f"{guess.name_doubt}; {doubt}".lstrip("; ")
+            guesses[canonical] = replace(guess, name_doubt=doubts)
+    return guesses
 
 
 def _of_one_mind(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
@@ -205,7 +219,7 @@ def _guess(
     name, *others = fitting
     si_unit = UNITS[kind][canonical]
     own = is_canonical(name, canonical) and (ours or name not in _EVERYBODYS)
-    known = own or _IN_OUR_FRAME.fullmatch(name) is not None
+    known = own or _ROS.fullmatch(name) is not None
     nanoseconds = _nanoseconds(table, name) if si_unit == "s" else None
     others = [other for other in others if other != nanoseconds]
     if canonical == "traction_force" and not others:  # of a wheel the other way may be forward
@@ -222,7 +236,7 @@ def _guess(
         unit = UnitGuess(si_unit, "")
     if canonical in ANGLES and numbers is not None:
         numbers = numbers * factor_to_si(unit.unit, si_unit)  # to unwrap them
-    sign, sign_doubt = _sign(canonical, numbers, known=known)
+    sign, sign_doubt = _sign(canonical, numbers, known=known or bool(_UPRIGHT.fullmatch(name)))
     zero = "90 deg must be where the centre of the leg's arc is straight below the hip"
     return ColumnGuess(
         name, unit, sign, doubt, sign_doubt, zero if canonical in ANGLES and not known else "",

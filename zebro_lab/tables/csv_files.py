@@ -38,7 +38,7 @@ _MAGIC: Final = {
 }
 
 
-def read_csv_file(path: Path) -> RawTable:
+def read_csv_file(path: Path, *, bare: bool = False) -> RawTable:
     """Read a table of text, also gzipped: CSV, TSV, columns separated by blanks.
 
     Separator, encoding (UTF-8, UTF-16, Windows-1252) and header are found from the file. Titles and
@@ -47,6 +47,10 @@ def read_csv_file(path: Path) -> RawTable:
     at a row's end are empty; a header alone gives a table without rows. Decimal commas are
     understood; thousands separators are not.
 
+    Args:
+        path: The file.
+        bare: Whether lines of numbers without a header are a table, too, of columns "1", "2", ….
+
     Raises:
         NotFound: There is no such file.
         DataError: The file is no text or no whole gzip file, has no header, a row has more cells
@@ -54,7 +58,7 @@ def read_csv_file(path: Path) -> RawTable:
     """
     data = read_unpacked(path)
     encoding = _encoding(path, data)
-    layout = _layout(path, _head(path, data[:_HEAD_BYTES], encoding))
+    layout = _layout(path, _head(path, data[:_HEAD_BYTES], encoding), bare=bare)
     table = _table(path, layout, _frame(path, layout, data, encoding), encoding)
     if layout.separator == BLANKS:
         _require_full_rows(table)
@@ -117,9 +121,9 @@ def _is_open(text: str) -> bool:
     return opened
 
 
-def _layout(path: Path, lines: list[Line]) -> TextLayout:
+def _layout(path: Path, lines: list[Line], *, bare: bool) -> TextLayout:
     try:
-        layout = find_layout(lines)
+        layout = find_layout(lines, bare=bare)
     except DataError as error:
         raise DataError(error.problem, file=path, row=error.row, line=error.line) from error
     if len(layout.header.names) > MOST_COLUMNS:
@@ -169,6 +173,8 @@ def _table(path: Path, layout: TextLayout, frame: pd.DataFrame, encoding: str) -
         header_line=layout.last_line,
         encoding=encoding,
         units={name: unit for name, unit in layout.header.units.items() if name in columns},
+        separator=layout.separator,
+        commented=layout.commented,
     )
 
 

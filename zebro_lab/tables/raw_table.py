@@ -54,6 +54,8 @@ class RawTable:
         units: Unit that the file states for a column, by header, as written in it.
         unreadable: Cell type of each column that has neither numbers nor strings, by header.
         kept: Which rows of the file the columns hold, counted from 0, shape (n,); None for all.
+        separator: Separator of cells in a text file, as of `pandas.read_csv`; None for other files.
+        commented: Whether the header of a text file is a comment, or made of numbers of columns.
     """
 
     path: Path
@@ -68,6 +70,8 @@ class RawTable:
     units: Mapping[str, str] = field(default_factory=dict)
     unreadable: Mapping[str, str] = field(default_factory=dict)
     kept: NDArray[np.intp] | None = None
+    separator: str | None = None
+    commented: bool = False
 
     def __len__(self) -> int:
         """Return the number of data rows; 0 for a table without columns."""

@@ -62,12 +62,14 @@ def has_table_name(path: Path) -> bool:
     return bool(_suffix(path))
 
 
-def read_table_file(path: Path, *, sheet: str | None = None) -> RawTable:
+def read_table_file(path: Path, *, sheet: str | None = None, bare: bool = False) -> RawTable:
     """Read a table: CSV and other text, Parquet or Excel; each of them may be gzipped.
 
     Args:
         path: The file.
         sheet: Sheet of a workbook; None for the only one that is not empty.
+        bare: Whether text may have any name, and lines of numbers without a header are a table,
+            too, of columns "1", "2", ….
 
     Raises:
         NotFound: There is no such file.
@@ -77,7 +79,7 @@ def read_table_file(path: Path, *, sheet: str | None = None) -> RawTable:
     """
     if not path.exists():
         raise NotFound(f"{path}: no such file")
-    suffix = _suffix(path)
+    suffix = _suffix(path) or ".csv" * bare
     if path.is_dir() or not suffix:
         name = path.name.lower()
         advice = next((told for suffix, told in _OTHERS.items() if name.endswith(suffix)), "")
@@ -88,6 +90,8 @@ def read_table_file(path: Path, *, sheet: str | None = None) -> RawTable:
         )
     if suffix.startswith(_EXCEL):
         table = read_excel_file(path, sheet=sheet)
+    elif bare and suffix.removesuffix(".gz") != ".parquet":
+        table = read_csv_file(path, bare=True)
     else:
         table = READERS[suffix.removesuffix(".gz")](path)
     if len(table) == 0:

@@ -41,6 +41,7 @@ class TextLayout:
         last_line: Number of the line above the first row of data, counted from 1.
         decimal: Decimal sign of the table where it is known: "," or "."; else None.
         width: Number of cells in the widest row that was seen, a final separator included.
+        commented: Whether the header is a comment, or made of numbers of columns.
     """
 
     separator: str
@@ -48,6 +49,7 @@ class TextLayout:
     last_line: int
     decimal: str | None
     width: int
+    commented: bool = False
 
 
 @dataclass(frozen=True)
@@ -74,11 +76,12 @@ class _Candidate:
         return self.header is not None, self.data.width > 1, self.data.values
 
 
-def find_layout(lines: Sequence[Line]) -> TextLayout:
+def find_layout(lines: Sequence[Line], *, bare: bool = False) -> TextLayout:
     """Find the layout of a table from its first lines.
 
     Args:
         lines: Number and text of each line that is not blank.
+        bare: Whether lines of numbers without a header are a table, too, of columns "1", "2", ….
 
     Raises:
         DataError: There is no header, or several layouts fit.
@@ -92,6 +95,9 @@ def find_layout(lines: Sequence[Line]) -> TextLayout:
     if not tried:
         return _without_numbers(body)
     best = _only_best(tried)
+    if best.header is None and bare and best.data.first == 0:
+        names = [str(i + 1) for i in range(len(best.rows[0]))]
+        return _layout(best, made_header(names, 0), best.data, body)
     if best.header is None:
         raise _no_header(best, body)
     above = [*lines[: len(lines) - len(below)], *body[: best.data.first]]
@@ -247,7 +253,8 @@ def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Lin
     cells = [cell for row in rows for cell in row]
     _require_fit(best, header, data, body)
     last = body[data.first - 1][0] if data.first else body[0][0] - 1
-    return TextLayout(best.separator, header, last, decimal_sign(cells), len(rows[widest]))
+    sign = decimal_sign(cells)
+    return TextLayout(best.separator, header, last, sign, len(rows[widest]), data.first == 0)
 
 
 def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> None:

@@ -133,6 +133,7 @@ def test_a_quaternion_of_motion_capture_is_found_whole_or_not(tmp_path):
         table = RawTable(tmp_path / "take.csv", dict(values[[*names, *columns]].items()))
         guesses = guess_columns(table, TRACK)
         assert {name for name in guesses if name[0] == "q"} == found
+        assert "which axis is up" in guesses["y_m"].name_doubt
         assert not any(guesses[name].doubts for name in found)
 
 

@@ -18,7 +18,7 @@ from zebro_lab.mcap.ros_log import bag_files
 from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
-from zebro_lab.track.trajectory.layouts import read_number_lines, read_number_table
+from zebro_lab.track.trajectory.layouts import read_pose_table
 from zebro_lab.track.trajectory.logged_poses import read_logged_poses
 from zebro_lab.track.trajectory.request import Axis, Layout, Plane, TrajectoryRequest, of_file
 from zebro_lab.track.trajectory.table import MAPPED_UNITS, QUATERNION, read_table_columns
@@ -118,10 +118,9 @@ def read_trajectory(
     elif layout is Layout.ROS:
         raise DataError("is no ROS log by its name; expected .mcap, .db3, .bag or a bag's folder, "
                         "or another --layout", file=path)  # fmt: skip
-    elif numbers := read_number_table(path, layout, plane=plane):
-        (layout, table), topic = numbers, None
     else:
-        layout, table, topic = Layout.TABLE, read_table_file(path, sheet=mapping.sheet), None
+        layout, table = read_pose_table(path, layout, plane=plane, sheet=mapping.sheet)
+        topic = None
     timed = layout is not Layout.KITTI or request.times is not None
     if layout is Layout.KITTI:
         plane = request.plane or Plane.XZ
@@ -129,8 +128,8 @@ def read_trajectory(
             table, files = _with_times(table, request.times), (path, request.times)
     source = mapping.source or table.source or "unknown"
     files = (*files, mapping.file) if mapping.file else files
-    own = mapping if layout is Layout.TABLE else replace(mapping, columns={}, keep=())
-    columns, rows, notes = read_table_columns(table, own)
+    named = mapping if layout is Layout.TABLE else replace(mapping, columns={}, keep=())
+    columns, rows, notes = read_table_columns(table, named)
     if "z_m" not in columns and plane is not Plane.XY:
         raise SettingsError(f"{path} has no column z; leave --plane out", key="--plane")
     zero = np.zeros(len(rows))
@@ -163,15 +162,17 @@ def _rotation(columns: Mapping[str, Array]) -> Array | None:
 
 def _with_times(table: RawTable, file: Path) -> RawTable:
     """Return a table of poses with the times of another file, one a line [s]."""
-    times = read_number_lines(file)
-    if times is None or times.rows.shape[1] != 1:
+    times = read_table_file(file, bare=True)
+    if len(times.columns) != 1:
         raise SettingsError(f"{file} is not a file of one number a line", key="--times")
-    if len(times.rows) != len(table):
+    if len(times) != len(table):
         raise SettingsError(
-            f"{file} has {counted(len(times.rows), 'time')}, {table.path} has "
+            f"{file} has {counted(len(times), 'time')}, {table.path} has "
             f"{counted(len(table), 'pose')}; expected as many of both",
             key="--times",
         )
-    t = pd.Series(times.rows[:, 0])
-    RawTable(file, {"t_s": t}, header_line=times.line - 1).require_increasing("t_s", t.to_numpy())
-    return replace(table, columns={**table.columns, "t_s": t}, units={})
+    (name,) = times.columns
+    t = times.numbers(name)
+    times.require_finite(name, t)
+    times.require_increasing(name, t)
+    return replace(table, columns={**table.columns, "t_s": pd.Series(t)}, units={})

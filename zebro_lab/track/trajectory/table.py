@@ -101,7 +101,7 @@ def read_table_columns(
     for name in MAPPED_UNITS:
         if name in NEEDED or mapping.has(table, name):
             advice = (
-                "leave such poses out, as by "
+                "leave such poses out, of a table by "
                 f'[{mapping.where}rows] keep = ["`{mapping.mapped[name].name}` > -1e9"] in '
                 f"{mapping.stated_in}"
             )

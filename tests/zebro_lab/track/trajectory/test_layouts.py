@@ -18,11 +18,11 @@ def read(file, **options):
 @pytest.mark.parametrize(
     ("text", "how", "message"),
     [
-        ("# only a comment\n", {}, "has no pose"),
-        ("0 0 0 0 0 0 0 1\n1 1 0\n", {}, r"row 2 .line 2.: found '1 1 0'; expected 8"),
+        ("# only a comment\n", {}, "is empty or all comments"),
+        ("0 0 0 0 0 0 0 1\n1 1 0\n", {}, r"row 2 .line 2.: the row has 3 cells, .* 8"),
         ("# a\n0 0 0 0 0 0 0 2\n", {}, r"row 1 .line 2.: the quaternion has length 2"),
-        ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 zero 1\n", {}, r"row 2 .line 2.: found .* zero 1'"),
-        ("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n", {}, r"row 2 .line 2.: found '1 nan .* finite"),
+        ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 zero 1\n", {}, r"row 2 .line 2.: 'zero' is not a number"),
+        ("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n", {}, r"'x_m', row 2 .line 2.: is empty; .*leave"),
         ("0 1 2 3\n", {}, r"4 numbers a line; .*8 .TUM. .*12 .KITTI."),
         (tum(*drive(), ","), {}, r"8 numbers .*--layout tum"),
         ("0," * 16 + "1\n", {}, r"17 numbers .*--layout tum"),
@@ -30,7 +30,7 @@ def read(file, **options):
         ("1 0 0 0 0 1 0 0 0 0 -1 0\n", {}, r"row 1 .line 1.: .*no rotation matrix"),
         (tum(T, POSITION, ROTATION), {"layout": (Layout.KITTI,)}, "8 numbers a line; expected 12"),
         (kitti(POSITION, ROTATION), {"layout": (Layout.TUM,)}, "12 numbers a line; expected 8"),
-        ("t,x,y\n0,0,0\n", {"layout": (Layout.TUM,)}, "line of words"),
+        ("t,x,y\n0,0,0\n", {"layout": (Layout.TUM,)}, "3 numbers a line; expected 8"),
     ],
 )
 def test_what_is_no_trajectory_is_refused_by_its_line(tmp_path, text, how, message):

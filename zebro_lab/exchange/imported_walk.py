@@ -111,8 +111,19 @@ def _write_more(draft: Path, walk: ImportedWalk) -> None:
     """Copy the robot's file and write the track into the draft folder, as far as there are any."""
     if walk.robot.file is not None:
         atomic_write_text(draft / ROBOT_FILE, walk.robot.file.read_text(encoding="utf-8-sig"))
-    if walk.track is not None:
-        _write_track(draft / TRACK, walk, walk.track)
+    if walk.track is None:
+        return
+    track = walk.track.track
+    with track_folder(
+        draft / TRACK,
+        walk.track.columns,
+        tum=tum_lines(track.poses).splitlines(),
+        source=track.source,
+        settings={"imported": str(track.file), "zero_s": walk.zero},
+        inputs=file_hashes(walk.track.files),
+        report={"notes": list(track.notes), "tracked": len(track.poses)},
+    ):
+        pass  # pictures would be added here; there are no photographs
 
 
 def _leg_profile(rate: float) -> LegProfile:
@@ -127,20 +138,6 @@ def _leg_profile(rate: float) -> LegProfile:
         sign=(1,) * N_LEGS,
         rate=rate,
     )
-
-
-def _write_track(out: Path, walk: ImportedWalk, track: ForeignTrack) -> None:
-    report = {"notes": list(track.track.notes), "tracked": len(track.track.poses)}
-    with track_folder(
-        out,
-        track.columns,
-        tum=tum_lines(track.track.poses).splitlines(),
-        source=track.track.source,
-        settings={"imported": str(track.track.file), "zero_s": walk.zero},
-        inputs=file_hashes(track.files),
-        report=report,
-    ):
-        pass  # pictures would be added here; there are no photographs
 
 
 def _rate(t: Array) -> float:

@@ -10,8 +10,7 @@ from zebro_lab.exchange.column_guesses import ColumnGuess, guess_columns, guess_
 from zebro_lab.exchange.columns_template import render_columns
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.documents import read_toml_document
-from zebro_lab.files.errors import AlreadyExists, DataError
-from zebro_lab.files.names import is_ros_log
+from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.opening import read_text
 from zebro_lab.ground.ground_file import TEMPLATE
 from zebro_lab.robot.robot_file import RobotFile, render_robot_file
@@ -60,14 +59,13 @@ def write_columns_template(
 
     Raises:
         NotFound: The table file does not exist.
-        DataError: The table cannot be read, or is a ROS log, which needs no column map.
+        DataError: The table cannot be read, or is none.
         SettingsError: The headers leave the kind open, or the existing file is no TOML.
         AlreadyExists: A `columns.toml` beside the table maps tables of this kind, and `force` is
             not set.
         OSError: The file cannot be written.
     """
     file = Path(file)
-    _require_no_ros_log(file)
     target = file.parent / COLUMNS_FILE
     present = "" if force or not target.exists() else read_text(target)
     if kind is not None or present:
@@ -84,18 +82,6 @@ def write_columns_template(
     values = [line.partition("  # ")[0] for line in text.splitlines() if line[:1] != "#"]
     doubts = sum(value.count(f'{DOUBT}"') for value in values)
     return WrittenColumns(target, found, guesses, doubts, table.notes)
-
-
-def _require_no_ros_log(file: Path) -> None:
-    """Raise `DataError` for a ROS log, with what takes it; import lists its joints."""
-    if file.exists() and is_ros_log(file):
-        raise DataError(
-            "is a ROS log, no table; give it to zebro-lab import --legs, with --joints where its "
-            "joints do not name the legs, or with unit, sign and offset of each in [legs.columns] "
-            f"of a {COLUMNS_FILE} beside it: "
-            'theta1 = {name = "NAME1", sign = -1, offset = "90 deg"}',
-            file=file,
-        )
 
 
 def _require_free(target: Path, present: str, kind: str | None) -> None:

@@ -82,7 +82,19 @@ def read_topic(
     with parsing(path, OTHER_FIELDS):
         for name, stamp, kind, content in _stamped(messages, parts):
             found.setdefault(name, []).append((stamp, kind, content))
-    chosen = _chosen(path, found, topic, topics, types, what)
+    if not found:
+        raise DataError(
+            f"holds no {what}; expected messages of type {', '.join(sorted(types))}, or of a run "
+            "that zebro-lab recorded the run's folder",
+            file=path,
+        )
+    if topic is not None and topic not in found:
+        raise DataError(f"has no {what} on topic {topic}; {nearest(topic, found)}", file=path)
+    fitting = [topic] if topic else [each for each in found if each in topics] or sorted(found)
+    if len(fitting) > 1:
+        problem = f"has {what} on the topics {', '.join(sorted(fitting))}; choose one with {_TOLD}"
+        raise SeveralTopics(problem, file=path)
+    chosen = fitting[0]
     t, kinds, contents = zip(*found[chosen], strict=True)
     notes = [] if damage is None else [f"{path.name} is incomplete ({damage})"]
     if len(found) > 1:
@@ -98,29 +110,3 @@ def _stamped(
         for topic, header, content in parts(message):
             stamp = header.stamp.sec + NANOSECOND * header.stamp.nanosec
             yield topic, stamp or NANOSECOND * message.log_time, message.type, content
-
-
-def _chosen(
-    path: Path,
-    found: Collection[str],
-    topic: str | None,
-    topics: Collection[str],
-    types: Collection[str],
-    what: str,
-) -> str:
-    if not found:
-        raise DataError(
-            f"holds no {what}; expected messages of type {', '.join(sorted(types))}, or of a run "
-            "that zebro-lab recorded the run's folder",
-            file=path,
-        )
-    if topic is not None:
-        if topic not in found:
-            raise DataError(f"has no {what} on topic {topic}; {nearest(topic, found)}", file=path)
-        return topic
-    fitting = [each for each in found if each in topics] or list(found)
-    if len(fitting) > 1:
-        listed = ", ".join(sorted(fitting))
-        problem = f"has {what} on the topics {listed}; choose one with {_TOLD}"
-        raise SeveralTopics(problem, file=path)
-    return fitting[0]

@@ -40,6 +40,7 @@ _OTHERS: Final = {
     ".ods": "save it as .xlsx or CSV", ".mat": "export its arrays as CSV or Parquet",
     ".tdms": "export it as CSV", ".c3d": "export it as CSV", ".h5": "export it as CSV or Parquet",
     ".tum": "it is a trajectory, which import takes as --track",
+    **dict.fromkeys((".mcap", ".db3", ".bag"), "import takes a ROS log as --legs, --imu, --track"),
     **dict.fromkeys((".zip", ".rar", ".7z", ".tar", ".tgz", ".tar.gz", ".bz2", ".xz"), _UNPACK),
 }  # fmt: skip
 

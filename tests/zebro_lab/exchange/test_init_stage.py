@@ -143,6 +143,6 @@ def test_existing_file_is_kept_unless_forced(tmp_path):
 
 def test_a_ros_log_is_told_with_the_command_that_reads_it(tmp_path):
     log = write_bag(tmp_path / "log", joints([0.0, 0.1], np.zeros((2, 6))))
-    with pytest.raises(DataError, match=r"is a ROS log, no table; .* import --legs, with --joints"):
-        write_columns_template(log)
+    with pytest.raises(DataError, match=r"is not a table file; .* import takes a ROS log as --leg"):
+        write_columns_template(log / "log.db3")
     assert not list(tmp_path.rglob("columns.toml"))

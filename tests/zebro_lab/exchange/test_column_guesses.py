@@ -52,14 +52,8 @@ def test_the_sign_of_a_leg_is_found_in_turns_of_its_unit(unit, turn, sign):
 
 
 def test_legs_by_place_are_sure_and_numbers_of_other_programs_are_not():
-    places = [
-        "front_left",
-        "front right",
-        "Bein_mitte_links",
-        "mid-right",
-        "rear left",
-        "hinten rechts",
-    ]
+    places = ["front_left", "front right", "Bein_mitte_links", "mid-right", "rear left",
+              "hinten rechts"]  # fmt: skip
     guesses = guess_columns(one("t", *places), "legs")
     assert [guesses[f"theta{leg}"].name for leg in range(1, 7)] == places
     assert not any(guess.name_doubt for guess in guesses.values())

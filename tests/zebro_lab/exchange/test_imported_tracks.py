@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from support.foreign_trajectories import drive, euroc, kitti, tum, written
+from support.foreign_trajectories import drive, kitti, written
 from support.imported_files import T, taken
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.runs.manifest import read_manifest
@@ -13,30 +13,18 @@ from zebro_lab.track.file import read_track
 from zebro_lab.track.trajectory.request import Plane, TrajectoryRequest
 
 
-def kitti_of(t, position, rotation):
-    return kitti(position, rotation)
-
-
-@pytest.mark.parametrize(
-    ("name", "text", "how"),
-    [
-        ("a.tum", tum, {}),
-        ("a.csv", euroc, {}),
-        ("a.txt", kitti_of, {"plane": Plane.XY, "times": "times.txt"}),
-    ],
-)
-def test_a_trajectory_alone_makes_a_run_with_a_track(tmp_path, name, text, how):
+def test_a_trajectory_alone_makes_a_run_with_a_track(tmp_path):
     t, position, rotation = drive()
-    file = written(tmp_path / name, text(t, position, rotation))
-    written(tmp_path / "times.txt", "".join(f"{stamp:.17g}\n" for stamp in t))
-    how = {key: tmp_path / v if key == "times" else v for key, v in how.items()}
-    folder = taken(tmp_path, track=file, trajectory=TrajectoryRequest(**how)).folder
+    file = written(tmp_path / "a.txt", kitti(position, rotation))
+    times = written(tmp_path / "times.txt", "".join(f"{stamp:.17g}\n" for stamp in t))
+    how = TrajectoryRequest(plane=Plane.XY, times=times)
+    folder = taken(tmp_path, track=file, trajectory=how).folder
     poses = read_track(folder / "track").poses
     np.testing.assert_allclose(poses.t, t, atol=1e-9)
     np.testing.assert_allclose(poses.position, position[:, :2], atol=1e-9)
     ahead = rotation.apply([1.0, 0.0, 0.0])
     np.testing.assert_allclose(np.tan(poses.yaw), ahead[:, 1] / ahead[:, 0], atol=1e-6)
-    assert read_manifest(folder).sources == {"track": f"import:{name}"}
+    assert read_manifest(folder).sources == {"track": "import:a.txt"}
 
 
 MOCAP = """
@@ -47,25 +35,14 @@ t_s = "Time (Seconds)"
 ) + "".join(f'q{axis} = "Body Rotation {axis.upper()}"\n' for axis in "xyzw")  # fmt: skip
 
 
-def motion_capture(folder):
-    """Write a drive as a motion-capture program does, with its column map; return the file."""
+def test_mapped_quaternions_of_a_motion_capture_table_are_the_heading(tmp_path):
     t, position, rotation = drive()
     columns = {"Frame": np.arange(len(t)), "Time (Seconds)": t}
-    columns |= dict(zip(("Body Rotation X", "Body Rotation Y", "Body Rotation Z",
-                         "Body Rotation W"), rotation.as_quat().T, strict=True))  # fmt: skip
+    columns |= {f"Body Rotation {a}": q for a, q in zip("XYZW", rotation.as_quat().T, strict=True)}
     columns |= {f"Body Position {a}": 1e3 * p for a, p in zip("XYZ", position.T, strict=True)}
-    pd.DataFrame(columns).to_csv(folder / "take.csv", index=False)
-    written(folder / "columns.toml", MOCAP)
-    return folder / "take.csv"
-
-
-@pytest.mark.parametrize("how", [{}, {"plane": Plane.XY}])
-def test_mapped_quaternions_of_a_table_are_the_heading(tmp_path, how):
-    folder = taken(
-        tmp_path, track=motion_capture(tmp_path), trajectory=TrajectoryRequest(**how)
-    ).folder
-    poses = read_track(folder / "track").poses
-    _, position, rotation = drive()
+    pd.DataFrame(columns).to_csv(tmp_path / "take.csv", index=False)
+    written(tmp_path / "columns.toml", MOCAP)
+    poses = read_track(taken(tmp_path, track=tmp_path / "take.csv").folder / "track").poses
     np.testing.assert_allclose(poses.position, position[:, :2], atol=1e-9)
     ahead = rotation.apply([1.0, 0.0, 0.0])
     np.testing.assert_allclose(np.tan(poses.yaw), ahead[:, 1] / ahead[:, 0], atol=1e-6)
@@ -79,14 +56,6 @@ def test_a_track_of_another_clock_is_brought_to_that_of_the_legs(files, tmp_path
         taken(tmp_path, **both)
     folder = taken(tmp_path, **both, track_offset=1000.25).folder
     np.testing.assert_allclose(read_track(folder / "track").poses.t, T[::20], atol=1e-9)
-
-
-def test_times_since_1970_of_a_track_tell_when_it_began(tmp_path):
-    t, position, rotation = drive()
-    file = written(tmp_path / "a.csv", euroc(t + 1_772_600_767, position, rotation))
-    folder = taken(tmp_path, track=file).folder
-    assert read_manifest(folder).start == "2026-03-04T05:06:07+00:00"
-    np.testing.assert_allclose(read_track(folder / "track").poses.t, t, atol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -96,15 +96,6 @@ def test_tables_of_several_kinds_share_one_file(tmp_path):
         write_columns_template(tmp_path / "legs.csv")
 
 
-def test_the_sheet_that_was_chosen_is_written(tmp_path):
-    pytest.importorskip("openpyxl")
-    with pd.ExcelWriter(tmp_path / "a.xlsx") as book:
-        for sheet in ("A", "B"):
-            rig().to_excel(book, sheet_name=sheet, index=False)
-    written = write_columns_template(tmp_path / "a.xlsx", kind="rig", sheet="B")
-    assert tomllib.loads(written.file.read_text())["sheet"] == "B"
-
-
 def test_template_reads_its_data_once_the_gaps_are_filled(tmp_path):
     text, _ = template(tmp_path, rig())
     file = tmp_path / "columns.toml"

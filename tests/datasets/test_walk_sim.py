@@ -184,6 +184,7 @@ def test_poses_of_photographs_are_those_of_the_walk(walk, shots):
         np.testing.assert_allclose(shots[name], expected, atol=2e-6)
 
 
+@pytest.mark.long
 def test_drawing_a_photograph_again_gives_the_committed_one(generator, shots):
     truth = generator.read_truth(FOLDER)
     picture = generator.take_photo(

@@ -64,6 +64,7 @@ def uninterrupted(samples):
     return *fitted(samples, Watcher(), keep=kept.append), kept
 
 
+@pytest.mark.long
 def test_a_fit_that_was_stopped_goes_on_to_the_same_calibration(samples, uninterrupted):
     whole, chains, _ = uninterrupted
     with pytest.raises(FitStopped) as stopped:

@@ -51,7 +51,7 @@ def test_noise_and_smooth_errors_are_distinguished():
     assert alone.noise == pytest.approx(0.1, rel=0.05)
 
 
-@pytest.mark.parametrize("smooth", [0.0, 0.3])
+@pytest.mark.parametrize("smooth", [0.0, pytest.param(0.3, marks=pytest.mark.long)])
 def test_the_lens_errs_by_its_covariance(smooth):
     rng = np.random.default_rng(3)
     squares = []

@@ -80,6 +80,7 @@ def test_exposures_apart_are_all_found_and_in_order(exposures):
     assert np.degrees(np.abs(error[:, 2]).max()) < 1.0
 
 
+@pytest.mark.long
 def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
     walk = np.array([[-0.12, 0.0, 0.0], [-0.025, 0.0, 0.0], [0.17, 0.0, 0.0]])
     rng = np.random.default_rng(1)

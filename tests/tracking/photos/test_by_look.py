@@ -122,6 +122,7 @@ def test_a_poorly_known_lens_is_corrected_by_the_floor_for_the_robot_too(scene, 
     assert np.all(np.abs(off) < 3 * sd)
 
 
+@pytest.mark.long
 def test_with_several_annotated_photographs_each_gives_the_template_of_those_near_it(
     scene, photos, walk, top
 ):

@@ -47,6 +47,7 @@ def spreads(edges: float, seed: int) -> tuple[float, float]:
     return seen.fit.edge_spread.sd, found.sd
 
 
+@pytest.mark.long
 def test_a_walk_to_and_fro_raises_the_spread_and_a_steady_one_does_not_lower_it():
     steady = [spreads(0.0, seed) for seed in range(3)]
     assert all(walk >= 0.999999 * floor for floor, walk in steady)

@@ -83,6 +83,7 @@ def test_stopped_fit_leaves_a_checkpoint_alone_and_resumes_to_convergence(
     assert tomllib.loads((out / "slip.toml").read_text())["verdict"]["converged"]
 
 
+@pytest.mark.long
 def test_killed_fit_leaves_a_checkpoint_that_resumes(sweep, run_command, tmp_path, monkeypatch):
     out = tmp_path / "out"
     arguments = (sweep, "--out", out, *SMALLER_FIT)

@@ -65,6 +65,7 @@ def test_a_mean_height_known_better_makes_all_poses_surer_and_keeps_the_bounce(
     assert (settings["mean_height_sd"], settings["height_sd"]) == (2e-4, 5e-3)
 
 
+@pytest.mark.long
 def test_several_processes_find_what_one_finds(usual, request_, monkeypatch, undrawn):
     monkeypatch.setattr(search, "WORTH_WORKERS", 0.0)
     two = track(request_, Nobody(), workers=2)

@@ -33,6 +33,7 @@ def test_jumps_to_the_fitted_mixture_are_accepted_more_often():
     assert jumps.share == MANY
 
 
+@pytest.mark.long
 def test_they_shorten_the_autocorrelation_time_and_leave_the_density_as_it_is():
     start = start_chains(leaning, LAPLACE, ensembles=4, thin=2, rng=np.random.default_rng(3))
     plain = advance(leaning, start, steps=250, jumps=Jumps(LAPLACE.distribution, MANY))

@@ -68,8 +68,6 @@ def write_columns_template(
     file = Path(file)
     target = file.parent / COLUMNS_FILE
     present = "" if force or not target.exists() else read_text(target)
-    if kind is not None or present:
-        _require_free(target, present, kind)
     table = read_table_file(file, sheet=sheet)
     found = kind or guess_kind(table)
     _require_free(target, present, found)
@@ -84,7 +82,7 @@ def write_columns_template(
     return WrittenColumns(target, found, guesses, doubts, table.notes)
 
 
-def _require_free(target: Path, present: str, kind: str | None) -> None:
+def _require_free(target: Path, present: str, kind: str) -> None:
     """Raise if the `columns.toml` that is present has no place for a section of a kind."""
     if not present:
         return

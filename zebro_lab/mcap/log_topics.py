@@ -10,7 +10,8 @@ from model.counted import counted
 from model.similar_name import nearest
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
-from zebro_lab.mcap.ros_log import LoggedMessage, read_messages
+from zebro_lab.mcap.log_records import LoggedMessage
+from zebro_lab.mcap.ros_log import read_messages
 
 OTHER_FIELDS: Final = "has messages with other fields than ROS defines"
 """What is wrong with a log whose description of a message is damaged, for `parsing`."""

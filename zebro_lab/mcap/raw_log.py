@@ -135,16 +135,16 @@ def read_raw_log(path: Path) -> SalvagedStreams:
     """
     parts: dict[str, list[SampleColumns]] = {}
 
-    def decoder(schema: Schema, _: str) -> Decode | None:
+    def decoder(schema: Schema) -> Decode | None:
         known = RAW_SCHEMAS.get(schema.name)
         return None if known is None else partial(decode_raw, dtype=known[0])
 
-    def take(topic: str, _time: int, _type: str, samples: SampleColumns) -> None:
+    messages, damage = read_log_messages(path, decoder)
+    for topic, _, samples, _ in messages:
         earlier = parts.setdefault(topic, [])
         if earlier and earlier[0].counts.shape[1] != samples.counts.shape[1]:
-            raise ValueError(f"the number of values per sample of {topic} changes")
+            damage = f"the number of values per sample of {topic} changes"
+            break
         earlier.append(samples)
-
-    damage = read_log_messages(path, decoder, take)
     streams = {topic: SampleColumns.joined(found) for topic, found in parts.items()}
     return SalvagedStreams(streams, damage)

@@ -5,7 +5,7 @@ from collections.abc import Collection
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from mcap.records import Schema
 from mcap.well_known import MessageEncoding
@@ -14,26 +14,10 @@ from mcap_ros2.decoder import DecoderFactory
 from zebro_lab.files.errors import NotFound
 from zebro_lab.files.names import BAG_METADATA, is_bag
 from zebro_lab.files.opening import open_file, parsing
-from zebro_lab.mcap.log_records import Decode, read_log_messages
+from zebro_lab.mcap.log_records import Decode, LoggedMessage, read_log_messages
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
-
-
-class LoggedMessage(NamedTuple):
-    """Decoded ROS message of a log.
-
-    Attributes:
-        topic: Topic of the message.
-        log_time: Time of logging since the Unix epoch [ns].
-        content: The decoded message, an object with the message's fields as attributes.
-        type: Name of its type, such as `sensor_msgs/msg/JointState`.
-    """
-
-    topic: str
-    log_time: int
-    content: Any
-    type: str = ""
 
 
 def bag_files(path: Path) -> tuple[Path, ...]:
@@ -114,13 +98,8 @@ def _reader(path: Path) -> "AnyReader":
 
 def _read_mcap(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], str | None]:
     factory = DecoderFactory()
-    messages: list[LoggedMessage] = []
 
-    def decoder(schema: Schema, _: str) -> Decode | None:
+    def decoder(schema: Schema) -> Decode | None:
         return factory.decoder_for(MessageEncoding.CDR, schema) if schema.name in types else None
 
-    def take(topic: str, log_time: int, name: str, content: Any) -> None:
-        messages.append(LoggedMessage(topic, log_time, content, name))
-
-    damage = read_log_messages(path, decoder, take)
-    return messages, damage
+    return read_log_messages(path, decoder)

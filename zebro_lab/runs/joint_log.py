@@ -17,8 +17,8 @@ from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.units import factor_to_si
+from zebro_lab.mcap.log_records import LoggedMessage
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, SeveralTopics, read_topic
-from zebro_lab.mcap.ros_log import LoggedMessage
 from zebro_lab.robot.leg_log import ANGLES, WIDEST
 from zebro_lab.tables.columns import Columns
 from zebro_lab.tables.raw_table import RawTable

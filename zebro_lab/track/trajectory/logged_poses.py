@@ -11,8 +11,8 @@ import pandas as pd
 from model.arrays import Array
 from model.rigid_path import plane_axes
 from zebro_lab.files.opening import parsing
+from zebro_lab.mcap.log_records import LoggedMessage
 from zebro_lab.mcap.log_topics import OTHER_FIELDS, Parts, TopicRows, read_topic
-from zebro_lab.mcap.ros_log import LoggedMessage
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.track.trajectory.table import COVARIANCE, QUATERNION
 

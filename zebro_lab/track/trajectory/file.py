@@ -132,6 +132,10 @@ def read_trajectory(
     columns, rows, notes = read_table_columns(table, named)
     if "z_m" not in columns and plane is not Plane.XY:
         raise SettingsError(f"{path} has no column z; leave --plane out", key="--plane")
+    key = "--forward" if request.forward else "--plane" if "z" in plane else None
+    if key and "yaw_rad" in columns and not set(QUATERNION) <= set(columns):
+        problem = "has a heading of its own, about z and ahead; leave the option out"
+        raise SettingsError(f"{path} {problem}", key=key)
     zero = np.zeros(len(rows))
     position = np.column_stack([columns.get(name, zero) for name in ("x_m", "y_m", "z_m")])
     forward = request.forward or (Axis.Z if "z" in plane else Axis.X)

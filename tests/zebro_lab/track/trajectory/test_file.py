@@ -131,6 +131,14 @@ def test_a_flat_table_has_no_place_in_space(tmp_path):
         read(file, plane=Plane.XZ)
 
 
+@pytest.mark.parametrize("how", [{"forward": Axis.Z}, {"forward": Axis.Y}, {"plane": Plane.ZX}])
+def test_a_heading_of_its_own_is_about_z_and_ahead(tmp_path, how):
+    rows = "0,0,0,0,0\n1,1,0,0,0.1\n2,2,0.1,0,0.2\n"
+    file = written(tmp_path / "a.csv", "t,x,y,z,yaw\n" + rows)
+    with pytest.raises(SettingsError, match=f"--{next(iter(how))}: .*leave the option out"):
+        read(file, **how)
+
+
 LINES = tum(UNIX + T, POSITION, ROTATION).splitlines()
 
 

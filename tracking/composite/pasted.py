@@ -91,15 +91,10 @@ class PastedReading(Reading):
     with_floor: bool = False
 
     @cached_property
-    def usual(self) -> NDArray[np.float32]:
-        """Density of each point's colour among all points used, per cubed grey level."""
-        density = colour_density(self.picture[self.used], self.picture, blur=1.0)
-        return density.astype(np.float32)
-
-    @cached_property
     def layers(self) -> NDArray[np.float32]:
-        """The picture's colours and their density among all points used, (rows, columns, 4)."""
-        return np.dstack((self.picture, self.usual))
+        """Colour of each point [grey levels], and its density among all points used, (m, n, 4)."""
+        density = colour_density(self.picture[self.used], self.picture, blur=1.0)
+        return np.dstack((self.picture, density.astype(np.float32)))
 
     @cached_property
     def floor(self) -> NDArray[np.bool_]:

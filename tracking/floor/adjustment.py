@@ -189,11 +189,7 @@ class Adjustment:
         """Compute the log marginal likelihood (Laplace) of the pixels, up to a constant."""
         parts = self._system(found)
         normal = _weighed([part.normal for part in parts], (1.0, 1.0, 1.0))
-        noise = sum(
-            float(np.linalg.slogdet(self._pixel_covariance(view, key))[1])
-            for view in self.views
-            for key in seen_keys(self.floor, view)
-        )
+        noise = -sum(float(np.linalg.slogdet(each)[1]) for each in self._pixel_weights.values())
         cost = sum(part.cost for part in parts)
         prior = sum(float(np.log(mark.prior_sd).sum()) for mark in self.floor.marks.values())
         prior += 2 * np.log(max(self.edge_sd, 1e-6))
@@ -298,21 +294,18 @@ class Adjustment:
         ]
         return float(np.mean(logs))
 
-    def _pixel_covariance(self, view: FloorView, key: int | str) -> Array:
-        covariance = view.covariances[key]
-        if len(view.pixels[key]) != 4:
-            return covariance
-        growth = edge_growth(view.pixels[key]).ravel()
-        return covariance + self.edge_sd**2 * np.outer(growth, growth)
-
     @cached_property
     def _pixel_weights(self) -> dict[tuple[int, int | str], Array]:
         """Inverse covariance of the pixels by number of the view and key of the mark."""
-        return {
-            (index, key): np.linalg.inv(self._pixel_covariance(view, key))
-            for index, view in enumerate(self.views)
-            for key in seen_keys(self.floor, view)
-        }
+        weights = {}
+        for index, view in enumerate(self.views):
+            for key in seen_keys(self.floor, view):
+                covariance = view.covariances[key]
+                if len(view.pixels[key]) == 4:
+                    growth = edge_growth(view.pixels[key]).ravel()
+                    covariance = covariance + self.edge_sd**2 * np.outer(growth, growth)
+                weights[index, key] = np.linalg.inv(covariance)
+        return weights
 
     def _by_tape(self, floor: FloorMap) -> "_Part":
         size = self._size

@@ -344,9 +344,5 @@ class Adjustment:
             CameraPose(pose.rotation_vector + turn, pose.translation + shift, pose.covariance)
             for pose, (turn, shift) in zip(found.poses, by_stand, strict=True)
         ]
-        return Adjusted(
-            found.floor.with_marks(marks),
-            tuple(poses),
-            found.lens + step[self._lens_slot],
-            found.edges + step[-2:],
-        )
+        lens, edges = found.lens + step[self._lens_slot], found.edges + step[-2:]
+        return Adjusted(found.floor.with_marks(marks), tuple(poses), lens, edges)

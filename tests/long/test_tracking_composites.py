@@ -68,7 +68,7 @@ class Case:
 
 CASES = (
     Case("1.1 body lengths apart", 0.264, 5, 12, 1.0, 0.5, 0.98),
-    Case("half a body apart", 0.12, 8, 8, 4.0, 2.0, 0.70),
+    Case("half a body apart", 0.12, 8, 16, 4.0, 2.0, 0.70),
     Case("no marker, 1.1 body lengths apart", 0.264, 5, 10, 1.0, 0.5, 0.98, marked=False),
     Case("no marker, half a body apart", 0.12, 8, 7, 4.0, 2.0, 0.70, marked=False),
 )

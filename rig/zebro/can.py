@@ -94,6 +94,10 @@ class CanLegs(LeftStill, LinkedStream[CanLink]):
         return self._link.write(self.profile.can_ids.stop, b"")
 
     def _sample(self, message: can.Message, now: float) -> Sample | None:
+        """Return the sample of a position frame; keep a clock frame's time for the next one.
+
+        None where the frame gives no sample; frames of a wrong length are counted as refused.
+        """
         ids = self.profile.can_ids
         if message.arbitration_id == ids.clock and message.dlc == CLOCK.size:
             self._stamp = CLOCK.unpack(message.data)
@@ -104,6 +108,10 @@ class CanLegs(LeftStill, LinkedStream[CanLink]):
         return None
 
     def _positions(self, data: bytes | bytearray, now: float) -> Sample | None:
+        """Return the sample of a position frame, or None where it is impossible, repeated or late.
+
+        It has a device time only where the latest clock frame has the same number.
+        """
         *counts, number = POSITIONS.unpack(data)
         if not self.profile.possible(tuple(counts)):
             self._refused += 1

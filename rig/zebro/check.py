@@ -74,7 +74,7 @@ def check_legs(
 
 
 def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOCK) -> None:
-    """Move one channel up by `STEP` (at least 1 count), hold the others, and check each motion.
+    """Raise one channel's count by `STEP` (at least 1 count), hold the others, and check all.
 
     Args:
         robot: The robot, open.
@@ -184,6 +184,7 @@ def find_lift_off(
     heights: dict[int, float] = {}
 
     def above(index: int) -> float:
+        """Return the hip height at `index` counts less that at touchdown; measure it only once."""
         if index not in heights:
             heights[index] = hip_height(index * count)
         return heights[index] - wanted

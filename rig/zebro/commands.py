@@ -47,12 +47,12 @@ class LegCommands(Protocol):
 
 
 class LeftStill(LinkedStream[Any]):
-    """Base of drivers that stop legs which they have moved when they are left.
+    """Base of leg drivers that, as context managers, stop the legs on exit if they moved them.
 
-    Legs that were only read go on, and a link that fails is left as it is.
+    Legs that were only read go on. An error of sending the stop is suppressed.
     """
 
-    _moved = False
+    _moved = False  # set by a driver when it sends set-points
 
     @abstractmethod
     def stop(self) -> bool:
@@ -86,7 +86,7 @@ def milliseconds(duration: float) -> int:
 def follow(
     legs: LegCommands, reference: LegReference, *, start: float, now: float, horizon: float
 ) -> bool:
-    """Send the leg angles that a gait has a time `horizon` ahead as set-points.
+    """Send as set-points the leg angles that a gait will have at the time `now + horizon`.
 
     Called repeatedly, at intervals of at most `horizon`, it makes the robot walk. A leg must move
     less than half a turn within the horizon, or it would turn in the wrong direction.

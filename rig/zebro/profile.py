@@ -254,6 +254,7 @@ def encode_counts(profile: LegProfile, theta: Sequence[float] | Array) -> tuple[
 
 
 def _order(legs: TomlTable) -> tuple[int, ...]:
+    """Read the leg number of each channel: all different, 1 to 6."""
     found = legs.wholes("order", least=1, most=6)
     if not found or len(set(found)) < len(found):
         raise legs.fault(f"found {list(found)}; expected different leg numbers, 1 to 6", "order")
@@ -267,6 +268,7 @@ def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, .
 
 
 def _registers(frame: TomlTable, layout: str, channels: int) -> Registers:
+    """Read the register map; for `poll` all values must be adjacent, as one request moves them."""
     last = DUMP_REGISTERS - 2  # a value takes two
     positions = frame.wholes("registers", most=last)
     if len(positions) != channels:
@@ -297,6 +299,7 @@ def _registers(frame: TomlTable, layout: str, channels: int) -> Registers:
 
 
 def _can_ids(frame: TomlTable) -> CanIds:
+    """Read the four arbitration ids, of 11 bits and all different."""
     names = ("clock", "positions", "set_points", "stop")
     ids = {name: frame.whole(f"{name}_id", most=0x7FF) for name in names}
     if len(set(ids.values())) != len(ids):
@@ -305,6 +308,7 @@ def _can_ids(frame: TomlTable) -> CanIds:
 
 
 def _as_document(profile: LegProfile) -> dict[str, Any]:
+    """Build the TOML document of a profile, with the values of the legs by ascending number."""
     ascending = sorted(profile.legs)
     channel_of = [profile.legs.index(leg) for leg in ascending]
     link: dict[str, Any] = {"kind": LEGS[profile.layout].link}

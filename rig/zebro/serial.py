@@ -73,6 +73,7 @@ class _RegisterStream(LinkedStream[ByteLink]):
         self.profile = profile
 
     def _sample(self, counts: tuple[int, ...]) -> list[Sample]:
+        """Return one sample of these counts, read now; none, counted as refused, if impossible."""
         if not self.profile.possible(counts):
             self._refused += 1
             return []
@@ -124,7 +125,10 @@ class DumpLegs(_RegisterStream):
         return samples
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Raise: a robot that only dumps its registers takes no commands.
+        """Raise, since a robot that only dumps its registers takes no commands.
+
+        The method exists because callers, such as `check_legs`, take any driver of legs as
+        `LegCommands`: they get an error that names a way out, not an AttributeError.
 
         Args:
             counts: Target count of each channel, in the order of the wire.
@@ -139,7 +143,10 @@ class DumpLegs(_RegisterStream):
         )
 
     def stop(self) -> bool:
-        """Return False, send nothing: a robot that only dumps its registers takes no commands."""
+        """Send nothing, and return False, since no link took a command: this robot takes none.
+
+        It does not raise: a recording calls it in its clean-up, also after `set_points` has raised.
+        """
         return False
 
 
@@ -224,10 +231,12 @@ class PolledLegs(LeftStill, _RegisterStream):
         return self._write(self.profile.registers.stop, b"\x01")
 
     def _write(self, first: int, data: bytes) -> bool:
+        """Write bytes to the registers from `first` on; return whether the link took them."""
         head = bytes((self.profile.registers.write_command, first, len(data)))
         return self._link.write(head + data)
 
     def _request(self) -> bytes | None:
+        """Request all positions and return their bytes; None without a complete answer in time."""
         self._link.read(0.0)  # leftovers of an answer that came too late
         registers, size = self.profile.registers, self._answer.size
         request = bytes((registers.read_command, registers.positions[0], size))

@@ -78,6 +78,7 @@ class PacketRobot(_ByteRobot):
         return encode_packet(Packet(Kind.LEGS, frame.number, ticks, body))
 
     def _execute(self, packet: Packet, now: float) -> None:
+        """Execute a stop or set-points of all legs; other packets are ignored."""
         layout = self.legs.profile.words(7)
         if packet.kind == Kind.STOP:
             self.legs.stop(now)
@@ -130,6 +131,7 @@ class PolledRobot(_ByteRobot):
         return True
 
     def _write(self, first: int, data: bytes, now: float) -> None:
+        """Execute a write to the stop register or to all set-points; others are ignored."""
         profile = self.legs.profile
         layout = profile.words(len(profile.legs) + 1)
         if first == profile.registers.stop and any(data):
@@ -184,6 +186,7 @@ class CanRobot:
         )  # fmt: skip
 
     def _execute(self, message: can.Message, now: float) -> None:
+        """Execute a stop or set-points of all legs; other frames are ignored."""
         ids = self.legs.profile.can_ids
         if message.arbitration_id == ids.stop:
             self.legs.stop(now)

@@ -42,7 +42,7 @@ class SimulatedBody:
     def __call__(self, now: float) -> tuple[float, float, float]:
         """Compute roll, pitch and yaw [rad] at a time by the legs' clock, never decreasing [s]."""
         began = now if self._at is None else self._at
-        steps = max(int(np.ceil((now - began) / STEP - 1e-9)), 1)
+        steps = max(int(np.ceil((now - began) / STEP - 1e-9)), 1)  # less rounding errors
         dt = (now - began) / steps  # 0 in the first call
         later = [self._legs.angles_at(began + (k + 1) * dt) for k in range(steps)]
         theta = np.array([self._theta, *later])
@@ -60,8 +60,8 @@ class SimulatedBody:
         """Compute the motion of the body at leg angles [rad] and speeds [rad/s], shapes (n, 6).
 
         Returns:
-            The motion, zero from the first instant on at which no three legs hold the robot, and
-            whether there is none.
+            The motion, which is zero from the first instant on at which no three legs hold the
+            robot, and whether three legs hold it at every instant.
         """
         n = len(theta)
         shapes = (n, 3), (n, 3), (n, N_LEGS), (n, N_LEGS, 2)

@@ -48,6 +48,7 @@ class SimulatedLegs:
         self._reference = reference
         self._switched_on: float | None = None
         self._number = 0
+        # Last command: start and duration since switched on [s], first and last angles [rad]
         self._motion: tuple[float, float, Array, Array] | None = None
 
     def frames(self, now: float) -> list[Frame]:
@@ -60,7 +61,7 @@ class SimulatedLegs:
             The frames in order; the first call switches the robot on and returns frame 0.
         """
         time = self._since_start(now)
-        due = int(np.floor(time * self.profile.rate + 1e-9)) + 1
+        due = int(np.floor(time * self.profile.rate + 1e-9)) + 1  # despite rounding errors
         frames = [self._frame(number) for number in range(self._number, due)]
         self._number = due
         return frames
@@ -121,6 +122,7 @@ class SimulatedLegs:
         self._motion = (time, 0.0, here, here)
 
     def _since_start(self, now: float) -> float:
+        """Return the time since the robot was switched on, which the first call does [s]."""
         if self._switched_on is None:
             self._switched_on = now
         return now - self._switched_on

@@ -250,6 +250,7 @@ class GuardedAcquisition:
         self._ignored = category
 
     def _log_notes(self) -> None:
+        """Pass the entries that wait in the mailbox to the sink, unless it has failed."""
         if self._sink is not None:
             for note in self._control.take_notes():
                 self._sink.event(note.kind, note.text)
@@ -275,6 +276,7 @@ class GuardedAcquisition:
                 return
 
     def _raise_if_stopped(self) -> None:
+        """Raise a pending stop above the ignored category; an emergency stop de-energises first."""
         stop = self._control.stop.pending
         if stop is None or (self._ignored is not None and stop.category <= self._ignored):
             return
@@ -283,6 +285,7 @@ class GuardedAcquisition:
         raise StopRequested(stop)
 
     def _command_speeds(self) -> None:
+        """Send the present set-points to both discs where they differ from those last sent."""
         wanted = self.wanted
         if wanted != self._sent:
             self._bench.turn(*wanted)

@@ -170,7 +170,9 @@ class DrivesBench(Bench):
         self._cell = cell
         self._further: frozenset[str] = frozenset()
         self._hot: dict[int, float] = {}
+        # Columns time, normal and traction force: forces whose disc speeds are not known yet
         self._waiting = np.empty((0, 3))
+        # Columns time and speed, from the last speed before the first waiting force on
         self._speeds = {"leg": np.empty((0, 2)), "ground": np.empty((0, 2))}
 
     def watch(self, limits: Collection[str]) -> None:

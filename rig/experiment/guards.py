@@ -93,7 +93,7 @@ class FrozenGuard:
         self._last: Values | None = None
         self._checked_at = self._changed = 0.0
         self._same = 0
-        self._wanted = self._steady = 0.0
+        self._wanted = self._steady = 0.0  # set-points at the last change, and of the last batch
         self._smallest = self._large_fraction = np.zeros(0)
         self._large: deque[NDArray[np.bool_]] = deque(maxlen=SCATTER_BATCHES)
         self._scattered = False
@@ -127,6 +127,11 @@ class FrozenGuard:
     def _learn(self, values: Values, last: Values, now: float) -> None:
         """Update each channel's smallest step, and whether any scatters beyond its rounding.
 
+        A channel scatters where a batch mostly changes it by `LARGE` resolutions or more: in more
+        than half of the last `SCATTER_BATCHES` batches with a change, and in more than half of all
+        batches, by an exponential moving average over `SCATTER_TIME`. Its resolution is the
+        smallest step so far, at least `SINGLE_PRECISION` of its value.
+
         Args:
             values: Values of a batch, shape (n, channels), n > 0.
             last: Values before the batch, shape (channels,).
@@ -138,7 +143,7 @@ class FrozenGuard:
         self._smallest = np.minimum(self._smallest, np.where(steps > 0, steps, np.inf).min(axis=0))
         resolution = np.maximum(self._smallest, SINGLE_PRECISION * np.abs(last))
         large = np.abs(values[-1] - last) >= LARGE * resolution
-        weight = -np.expm1((self._checked_at - now) / SCATTER_TIME)
+        weight = -np.expm1((self._checked_at - now) / SCATTER_TIME)  # of a moving average
         self._large_fraction += weight * (large - self._large_fraction)
         if steps.any():
             self._large.append(large)
@@ -191,6 +196,7 @@ class RecordGuard:
             self._base, self._since = counters, now
 
     def _require_most(self, counters: Counters, base: Counters) -> None:
+        """Check the fraction of missing and rejected records between two states of the counters."""
         received = counters.received - base.received
         bad = counters.lost + counters.rejected - base.lost - base.rejected
         if bad + received >= MIN_RECORDS and bad > MAX_BAD_FRACTION * (bad + received):

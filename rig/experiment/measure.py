@@ -61,6 +61,7 @@ def settle(acquire: GuardedAcquisition, plan: Plan, point: Point, zero: Zero) ->
     window: list[Readings] = []
 
     def steady(batch: Batch) -> bool:
+        """Add a batch to the window, drop what is older than the window, and test the rest."""
         if not len(batch.readings):
             return False
         window.append(batch.readings.without(zero))
@@ -99,6 +100,7 @@ def record(
     kept: list[Readings] = []
 
     def keep(batch: Batch) -> None:
+        """Store the samples of a batch and, in a sweep, command the slip ratio that is now due."""
         # Samples can be older than the recording, because they waited for their speeds.
         readings = batch.readings.without(zero).since(start)
         kept.append(readings)
@@ -112,6 +114,7 @@ def record(
 
 
 def _collect(acquire: GuardedAcquisition, duration: float) -> Readings:
+    """Poll for a duration [s] and join all readings, zero not subtracted."""
     parts: list[Readings] = []
     acquire.until(lambda batch: parts.append(batch.readings), duration)
     return join(parts)

@@ -56,6 +56,7 @@ def parse_plan(table: TomlTable) -> Plan:
 
 
 def _points(table: TomlTable) -> PointGrid:
+    """Read the grid; the length of a point is a `duration` [s] or `turns` of the leg disc."""
     length = table.choice("length", ("duration", "turns"))
     omega = table.positive("omega_leg")
     # Turns of the leg disc, because the ground disc stands still at slip 1.
@@ -82,6 +83,7 @@ def _points(table: TomlTable) -> PointGrid:
 
 
 def _load(table: TomlTable) -> LoadSetting:
+    """Read how the load is set; only by hand is known."""
     set_by = table.text("set_by")
     if set_by != "hand":
         raise table.fault(f'found {set_by!r}; set the load by hand: set_by = "hand"', "set_by")
@@ -93,6 +95,7 @@ def _load(table: TomlTable) -> LoadSetting:
 
 
 def _settle(table: TomlTable) -> SettleCriterion:
+    """Read the criterion for a steady state, whose timeout must be at least its window."""
     criterion = SettleCriterion(
         window=table.positive("window"),
         speed=table.positive("speed"),
@@ -127,6 +130,10 @@ def _controls(table: TomlTable) -> Controls:
 
 
 def _limits(table: TomlTable, *, top_speed: float) -> RunLimits:
+    """Read the limits and check each against `guards_off`.
+
+    A guard of the speed error counts as off above half of `top_speed`, the leg disc's [rad/s].
+    """
     off_above = OFF_ABOVE | {"speed_error": top_speed / 2}
     silence = table.positive("silence", 0.25)
     limits = RunLimits(

@@ -117,7 +117,7 @@ class _Run:
         points = {step.number for step in self._steps if isinstance(step, Point)}
         self._points = len(points)
         self._done = points & set(done)
-        self._past = set(self._done)
+        self._past = set(self._done)  # steps that need no time any more: refused points, too
         self._zero: Zero | None = None
         self._loaded: float | None = None
         self._recording = False
@@ -225,6 +225,7 @@ class _Run:
         self._watcher.changed(condition)
 
     def _tare(self) -> None:
+        """Unload and take the zero of the load cell; log a warning where it has drifted."""
         self._announce("zero of the load cell")
         self._set_load(0.0)
         zero = take_zero(self._acquire, self._plan.controls.tare_duration)
@@ -240,6 +241,7 @@ class _Run:
         self._zero = zero
 
     def _set_load(self, target: float) -> None:
+        """At standstill have a normal force set [N], unless it is; 0 removes all load."""
         if target == self._loaded:
             return
         self._loaded = None
@@ -276,6 +278,7 @@ class _Run:
         self._sink.event("refused", f"{point.label}: {'; '.join(problems)}")
 
     def _attempt(self, point: Point, attempt: int) -> PointVerdict:
+        """Settle the discs at a point, record it once, and judge the recording."""
         self._announce(point.label if attempt == 1 else f"{point.label}, attempt {attempt}")
         self._attempts += 1
         zero = self._zero or UNLOADED
@@ -291,6 +294,7 @@ class _Run:
         return verdict
 
     def _announce(self, what: str) -> None:
+        """Show that a step begins, with the progress of the run and the estimated time left."""
         if self._plan.limits.guards_off:
             what = f"{what} [guards off: {', '.join(self._plan.limits.guards_off)}]"
         left = [step for step in self._steps if step.number not in self._past]
@@ -318,6 +322,7 @@ class _Run:
             self._acquire.disarm()
 
     def _close(self, reason: str, verdict: PointVerdict | None = None) -> None:
+        """Close the recording of an attempt, if one is open."""
         if self._recording:
             self._recording = False
             self._sink.close_run(verdict, reason=reason)

@@ -100,7 +100,8 @@ def spell_out(plan: Plan) -> tuple[Step, ...]:
 def steps_left(steps: Sequence[Step], done: Collection[int]) -> list[Step]:
     """List the steps that are left, a zero first; none if every point is finished.
 
-    Zeros without a point that is left since the previous zero are omitted.
+    Of the zeros, only those are kept that directly follow a point that is left, and the one before
+    the first such point.
 
     Args:
         steps: Steps of a plan, in order.
@@ -115,6 +116,7 @@ def steps_left(steps: Sequence[Step], done: Collection[int]) -> list[Step]:
 
 
 def _points(plan: Plan) -> list[Point]:
+    """List the points of the grid in order, with the number 0, which `spell_out` replaces."""
     grid = plan.points
     rng = np.random.default_rng(grid.seed)
     loads = np.array(grid.loads)

@@ -132,9 +132,10 @@ def judge_point(
 
 
 def _deviations(readings: Readings, slip: Array, point: Point, accept: Acceptance) -> Iterator[str]:
-    """Yield a phrase for each excess of mean slip, slip drift and friction drift; NaN is one.
+    """Yield a phrase for each of mean slip, slip drift and friction drift beyond its limit, or NaN.
 
-    The drifts, second half less first half, are not checked in a sweep.
+    The drifts, second half less first half, are not checked in a sweep, whose mean slip ratio is
+    compared with the mean over time of the commanded one.
     """
     wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
     off = float(slip.mean()) - wanted

@@ -102,6 +102,7 @@ def weigh(
     """
 
     def poll() -> Batch:
+        """Wait one period and return the samples that have arrived."""
         clock.sleep(period)
         return bench.read()
 
@@ -117,9 +118,9 @@ def weigh(
 
 
 def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
-    """Fit gain and zero of the normal channel: readings on forces, weighted by 1 / error².
+    """Fit gain and zero of the normal channel: linear regression of readings, weights 1 / error².
 
-    Their variances are multiplied by the reduced chi-square where it is above 1.
+    The variances of gain and zero are multiplied by the reduced chi-square where it is above 1.
 
     Args:
         weighing: Readings under at least two different forces.
@@ -132,21 +133,21 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     if np.ptp(force) <= 0:
         raise ProtocolError("every weight is 0 N; expected one above 0 N: check masses and gravity")
     design = np.column_stack([np.ones_like(force), force])
-    error = np.maximum(np.array(weighing.errors), 1e-9)
+    error = np.maximum(np.array(weighing.errors), 1e-9)  # a simulated cell can be without noise
     weighted = design / error[:, None]
     (zero, slope), *_ = np.linalg.lstsq(weighted, reading / error, rcond=None)
-    left = reading - design @ np.array([zero, slope])
+    residuals = reading - design @ np.array([zero, slope])
     freedom = max(len(force) - 2, 1)
     # Residuals above the noise come from weights that hang askew: inflate the covariance by the
     # reduced chi-square where it is above 1.
-    scale = max(float(np.sum((left / error) ** 2)) / freedom, 1.0)
+    scale = max(float(np.sum((residuals / error) ** 2)) / freedom, 1.0)
     covariance = scale * np.linalg.inv(weighted.T @ weighted)
     return GainCheck(
         slope=float(slope),
         slope_sd=float(np.hypot(np.sqrt(covariance[1, 1]), weight_sd * abs(slope))),
         zero=float(zero),
         zero_sd=float(np.sqrt(covariance[0, 0])),
-        misfit=float(np.abs(left).max()),
+        misfit=float(np.abs(residuals).max()),
     )
 
 

@@ -297,13 +297,17 @@ def encode_orientation(
 
 
 def _turned(mounting: "Rotation", vectors: Array) -> Array:
-    """Rotate vectors, shape (n, 3); one with an axis that is not measured only by no rotation."""
-    if mounting.magnitude() == 0:  # else a NaN of one axis would make all three NaN
+    """Rotate vectors from the sensor's axes to the body's, shape (n, 3).
+
+    A NaN, of an axis that is not measured, makes all three NaN unless the mounting is no rotation.
+    """
+    if mounting.magnitude() == 0:  # multiplying by its zeros would spread a NaN as well
         return vectors
     return mounting.apply(vectors)
 
 
 def _as_count(value: float, kind: str) -> float:
+    """Round and clip a value to the range of an integer type; leave it as it is for `float32`."""
     if kind == "float32":
         return value
     limits = np.iinfo(kind)

@@ -75,6 +75,7 @@ class SimulatedImu:
         return self._wire.stream(frames)
 
     def _encode(self, number: int, switched_on: float) -> bytes:
+        """Encode the packet of a sample, taken `number` sample intervals after switching on."""
         time = number / self._profile.rate
         counts = encode_orientation(self._profile, *self._motion(switched_on + time))
         ticks = round(time / TICK)

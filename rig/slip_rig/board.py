@@ -113,11 +113,13 @@ class RigBoard(PacketStream):
         return self.send(Kind.DISC_SPEEDS, speed_body(self.profile).pack(*counts))
 
     def _with_status(self, sample: Sample) -> Sample:
+        """Move the last count of a sample, the board's status, to its `status`, and remember it."""
         *counts, status = sample.counts
         self._status = int(status)
         return sample._replace(counts=tuple(counts), status=self._status)
 
     def _arm(self, disc: str) -> None:
+        """Begin to feed the watchdog for a disc; where none is armed yet, clear its stop first."""
         if not self._armed:
             self.send(Kind.STOP)  # releases a board whose watchdog had stopped it
             self._speeds = dict.fromkeys(self._speeds, 0.0)

@@ -121,7 +121,7 @@ def decode_further_loads(
         the profile has no scale for them.
     """
     counts = as_columns(samples).counts.reshape(-1, 6).astype(float)
-    lateral = counts[:, 3 - profile.normal.index - profile.traction.index]
+    lateral = counts[:, 3 - profile.normal.index - profile.traction.index]  # 0 + 1 + 2 = 3
     scale = profile.counts_per_torque
     torque = None if scale is None else np.abs(counts[:, 3:]).max(axis=1) / scale
     return lateral / profile.counts_per_force, torque
@@ -171,7 +171,11 @@ def decode_disc_angles(
 def _across(
     leg: DiscDrive, ground: DiscDrive, samples: Sequence[Sample], *, count: int
 ) -> tuple[Array, Array, Array]:
-    """Return the leg disc's times, and a count of both drives then, in radians of the disc."""
+    """Return the leg drive's sample times [s], and angles or speeds of both discs at these times.
+
+    `count` selects them: 0 for angles [rad], 1 for speeds [rad/s], as counts of a sample are motor
+    position [rev] and velocity [rev/s]. The ground disc's are interpolated linearly.
+    """
     columns = as_columns(samples)
     time, turned = {}, {}
     for drive in (leg, ground):

@@ -160,6 +160,7 @@ class DriveBus(LinkedStream[CanLink]):
             super().__exit__(*exception)
 
     def _feed(self) -> None:
+        """Send the set-points of armed drives again every `feed_interval`, for their watchdogs."""
         now = self._clock.now()
         if now < self._feed_at:
             return
@@ -190,12 +191,14 @@ class DriveBus(LinkedStream[CanLink]):
             self._pending += self._receive(min(left, self.profile.feed_interval))
 
     def _take(self, timeout: float) -> list[Sample]:
+        """Return the pending samples and those that arrive, and count them as received."""
         kept, self._pending = self._pending, []
         samples = kept + self._receive(0.0 if kept else timeout)
         self._received += len(samples)
         return samples
 
     def _receive(self, timeout: float) -> list[Sample]:
+        """Return the samples that arrive, and store heartbeats and temperatures in their drives."""
         messages = self._link.read(timeout)
         samples = []
         for message, arrived in zip(messages, self._link.arrivals(messages), strict=True):
@@ -214,6 +217,7 @@ class DriveBus(LinkedStream[CanLink]):
         return samples
 
     def _estimate(self, axis: "OdriveDrive", message: can.Message, arrived: float) -> list[Sample]:
+        """Return one sample of an encoder estimate; none, counted as refused, if it is invalid."""
         if message.dlc == ESTIMATES.size:
             counts = ESTIMATES.unpack(message.data)
             if all(map(math.isfinite, counts)):
@@ -304,4 +308,5 @@ class OdriveDrive:
             )
 
     def _send(self, command: Command, data: bytes) -> None:
+        """Send a frame to the drive; on a disconnected bus it is lost, and the watchdog remains."""
         self._bus._link.write(can_id(self.place.node, command), data)

@@ -99,7 +99,7 @@ WHOLE: Final = frozenset(RECORD.size * count for count in range(1, MOST_IN_ONE +
 
 
 class NetFtCell(LinkedStream[UdpLink]):
-    """Stream of a Net F/T load cell: counts are Fx, Fy, Fz, Tx, Ty, Tz; status as in `rdt`.
+    """Stream of a Net F/T load cell: counts Fx, Fy, Fz, Tx, Ty, Tz; status bits `STATUS_BITS`.
 
     Losses show as gaps in the record numbers. The device time counts the cell's own readings.
     Datagrams may hold one record or many, whatever was requested. Entering sends the start request,

@@ -186,7 +186,7 @@ def load_rig_profile(name: str) -> RigProfile:
     table = open_profile(name, device="slip-rig")
     discs, limits = table.table("discs"), table.table("limits")
     drives, load_cell, board = (table.table(key) for key in ("drives", "load_cell", "board"))
-    if not drives.empty == load_cell.empty != board.empty:
+    if not drives.empty == load_cell.empty != board.empty:  # both or neither, and else the board
         raise table.fault("expected either [drives] and [load_cell], or [board], not both")
     profile = RigProfile(
         name=Path(name).stem,
@@ -214,6 +214,7 @@ def _limits(table: TomlTable) -> Limits:
 
 
 def _drives(table: TomlTable) -> DriveProfile:
+    """Read both drives, whose nodes must differ."""
     leg, ground = (_disc_drive(table.table(key)) for key in ("leg", "ground"))
     if leg.node == ground.node:
         raise table.fault(f"both drives have node {leg.node}; expected two different nodes")
@@ -235,6 +236,7 @@ def _disc_drive(table: TomlTable) -> DiscDrive:
 
 
 def _load_cell(table: TomlTable) -> LoadCellProfile:
+    """Read the load cell; normal and traction force must be on different axes."""
     normal, traction = (_axis(table.table(key)) for key in ("normal", "traction"))
     if normal.index == traction.index:
         raise table.fault(
@@ -258,6 +260,7 @@ def _axis(table: TomlTable) -> ForceAxis:
 
 
 def _board(table: TomlTable) -> BoardProfile:
+    """Read the board; one that is a table has no line, byte order or watchdog."""
     link: BoardLink = table.choice("link", ("serial", "table"), "serial")
     is_table = link == "table"
     return BoardProfile(

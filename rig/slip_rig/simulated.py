@@ -90,7 +90,8 @@ class SimulatedRig:
         values: Values of the law's parameters.
         plan: Radii, and the sweep that the rig drives by itself for as long as no drive commands:
             its slips a `duration` apart, gliding from each to the next.
-        imperfections: Sensor errors, noise, slip wander and bump of the ground disc.
+        imperfections: Sensor errors, noise, slip wander and bump of the ground disc; run-outs and
+            `delay` are not simulated.
         dynamics: Dynamics of the discs.
         rng: Random generator.
 
@@ -238,6 +239,7 @@ class SimulatedRig:
         return truth, np.clip(np.searchsorted(truth.time, times + GRID / 2) - 1, 0, None)
 
     def _run(self, n: int) -> RigTruth:
+        """Simulate the next n steps of `GRID`, at constant set-points, and return their states."""
         time = np.arange(self._step + 1, self._step + n + 1, dtype=np.float64) * GRID
         self._step += n
         if self._sweeping:
@@ -276,12 +278,19 @@ class SimulatedRig:
         return smooth * (1 + self._dynamics.ripple * np.sin(self._dynamics.ripple_order * angle))
 
     def _wandering(self, n: int) -> Array:
-        """Draw the factor on the ground speed that makes the slip ratio wander, shape (n,) [-]."""
+        """Draw the factor on the ground speed that makes the slip ratio wander, shape (n,) [-].
+
+        At a slip ratio kappa the wander has the standard deviation `slip_wander_sd`·(1 - kappa).
+        """
         rho = lag_one_correlation(GRID, self._imperfections.slip_wander_time)
         path, self._wander = _continue_ar1(rho, self._wander, self._rng, n)
         return 1 - self._imperfections.slip_wander_sd * path
 
     def _contact(self, leg: Array, ground: Array, n: int) -> tuple[Array, Array, Array]:
+        """Compute true slip ratio [-], load and traction [N] at disc speeds [rad/s], shapes (n,).
+
+        While the leg disc stands, slip and traction are 0.
+        """
         speed_leg = leg * self._plan.radius_leg
         true_radius = self._plan.radius_ground * (1 + self._imperfections.radius_error)
         speed_ground = ground * true_radius
@@ -290,6 +299,7 @@ class SimulatedRig:
         slip[moving] = slip_ratio(
             speed_leg[moving], speed_ground[moving], SlipDefinition.MATERIAL
         ).clip(-50.0, 50.0)
+        # The disc's angle is already that at the end of the stretch: go back from there.
         angle = self._angle["ground"] - np.cumsum(ground[::-1])[::-1] * GRID
         rise = bump_rise(
             angle, height=self._imperfections.bump_height, width=self._imperfections.bump_width
@@ -300,6 +310,7 @@ class SimulatedRig:
         return slip, load, np.where(moving, force, 0.0)
 
     def _noisy(self, force: Array, n: int) -> Array:
+        """Draw AR(1) noise of the traction channel, which grows with the force, shape (n,) [N]."""
         size = self._imperfections.noise_sd0 + self._imperfections.noise_sd1 * np.abs(force)
         rho = lag_one_correlation(GRID, self._imperfections.noise_correlation_time)
         path, self._noise = _continue_ar1(rho, self._noise, self._rng, n)

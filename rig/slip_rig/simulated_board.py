@@ -72,6 +72,7 @@ class SimulatedBoard:
         return self._wire.stream(frames)
 
     def _frames(self, due: int) -> list[bytes]:
+        """Encode the samples after the last one sent up to number `due`."""
         numbers = np.arange(self._number + 1, due + 1)
         if len(numbers) == 0:
             return []
@@ -89,10 +90,12 @@ class SimulatedBoard:
         ]
 
     def _encode(self, number: int, counts: tuple[int, ...]) -> bytes:
+        """Encode the packet of a sample, taken `number` sample intervals after switching on."""
         ticks = round(number / self._profile.rate / TICK)
         return encode_packet(Packet(Kind.SLIP_RIG, number, ticks, self._body.pack(*counts)))
 
     def _execute(self, packet: Packet, now: float) -> None:
+        """Execute a stop, which clears an expired watchdog, or speeds of both discs."""
         if packet.kind == Kind.STOP:
             self._status = 0
             self._stop()
@@ -105,6 +108,7 @@ class SimulatedBoard:
             self._rig.command("ground", ground / self._profile.counts_per_speed)
 
     def _stop(self) -> None:
+        """Stop both discs, and the watchdog until the next speed command."""
         self._fed = math.inf
         self._rig.command("leg", 0.0)
         self._rig.command("ground", 0.0)

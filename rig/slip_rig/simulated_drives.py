@@ -34,6 +34,17 @@ EMERGENCY_STOP: Final = {"0.5": 0x4000, "0.6": 0x2}
 
 @dataclass
 class _Axis:
+    """State of a simulated axis.
+
+    Attributes:
+        disc: Disc that it turns, `leg` or `ground`.
+        place: Node, gear and sign.
+        state: Present `AxisState`.
+        error: Bits of the axis error.
+        velocity: Set-point of the motor [rev/s].
+        fed: Time of the last message to the axis, which feeds its watchdog [s].
+    """
+
     disc: str
     place: DiscDrive
     state: int = AxisState.IDLE
@@ -100,6 +111,7 @@ class SimulatedDrives:
         self._send_due(now)
 
     def _send_due(self, now: float) -> None:
+        """Send the heartbeats and the encoder estimates of both axes where they are due."""
         if now >= self._heartbeat_at:
             self._heartbeat_at = now + HEARTBEAT_INTERVAL
             for axis in self._axes.values():
@@ -119,11 +131,13 @@ class SimulatedDrives:
         self._bus.send(can.Message(arbitration_id=arbitration_id, data=data, is_extended_id=False))
 
     def _answer(self, axis: _Axis, command: int, now: float) -> None:
+        """Answer a remote frame: the temperatures, with NaN for the motor, and nothing else."""
         axis.fed = now
         if command == Command.TEMPERATURE:
             self._send(axis, Command.TEMPERATURE, TEMPERATURES.pack(self.temperature, math.nan))
 
     def _execute(self, axis: _Axis, command: int, data: bytes, now: float) -> None:
+        """Execute a command to an axis; unknown commands and lengths are ignored."""
         axis.fed = now  # any message to an axis feeds its watchdog
         if command == Command.SET_INPUT_VELOCITY and len(data) == INPUT_VELOCITY.size:
             axis.velocity, _ = INPUT_VELOCITY.unpack(data)
@@ -142,14 +156,17 @@ class SimulatedDrives:
             self._fail(axis, EMERGENCY_STOP[self._firmware])
 
     def _turn(self, axis: _Axis) -> None:
+        """Set the speed of the disc from the motor's velocity set-point."""
         omega = axis.place.sign * axis.velocity * 2 * math.pi / axis.place.gear
         self._rig.command(axis.disc, omega)
 
     def _release(self, axis: _Axis) -> None:
+        """De-energise an axis; the disc of one in closed loop is stopped."""
         if axis.state == AxisState.CLOSED_LOOP:
             self._rig.command(axis.disc, 0.0)
         axis.state = AxisState.IDLE
 
     def _fail(self, axis: _Axis, error: int) -> None:
+        """De-energise an axis and add bits to its error."""
         self._release(axis)
         axis.error |= error

@@ -100,6 +100,7 @@ class SimulatedLoadCell:
         return np.clip(np.rint(counts), -INT32, INT32).astype(np.int64)
 
     def _send(self, reading: int, values: list[int]) -> None:
+        """Add the record of a reading to the datagram, and send that once it is complete."""
         self._number += 1
         self.sent += 1
         record = RECORD.pack(self._number % WRAP, reading % WRAP, self.status, *values)
@@ -110,11 +111,13 @@ class SimulatedLoadCell:
                 self._emit(arrived)
 
     def _emit(self, datagram: bytes) -> None:
+        """Send a datagram to the client, if there is one."""
         if self._socket is not None and self._client is not None:
             with contextlib.suppress(OSError):  # the client has closed its socket
                 self._socket.sendto(datagram, self._client)
 
     def _execute(self) -> None:
+        """Execute all requests that have arrived."""
         if self._socket is None:
             return
         with contextlib.suppress(BlockingIOError):
@@ -126,6 +129,7 @@ class SimulatedLoadCell:
                 self._handle(data, sender)
 
     def _handle(self, data: bytes, sender: tuple[str, int]) -> None:
+        """Start records for the sender, numbered from 1 again, or stop them; ignore other data."""
         if len(data) != REQUEST.size:
             return
         magic, request, _ = REQUEST.unpack(data)

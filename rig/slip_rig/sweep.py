@@ -10,6 +10,7 @@ from model.errors import DomainError
 
 
 def _require(holds: bool, name: str, value: float, expected: str) -> None:
+    """Raise a DomainError with name and value of a set-point where a condition does not hold."""
     if not holds:
         raise DomainError(f"{name} is {value:g}; expected {expected}")
 

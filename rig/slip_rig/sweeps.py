@@ -2,7 +2,7 @@
 r"""Split the recording of a rig that sweeps by itself into sweeps, by jumps of the slip ratio.
 
 After its end a sweep restarts at another slip ratio, and usually at another load. The mean slip
-ratio of the next `WINDOW` less that of the last one,
+ratio of the `WINDOW` w after an instant less that of the one before it,
 
 .. math::
     d(t) = \bar\kappa(t, t + w) - \bar\kappa(t - w, t) ,
@@ -64,9 +64,12 @@ def _bin_edges(time: Array) -> NDArray[np.intp]:
 def _jumping(slip: Array) -> NDArray[np.bool_]:
     """Return whether slip jumps to the next sweep in each bin, shape (bins,).
 
-    A jump is a stretch with |d| > `SETTLED`, and |d| > `JUMP` somewhere, where d is the mean slip
-    of the next `WINDOW` less that of the last. `slip` is the mean slip ratio of each bin, shape
-    (bins,); there are no jumps in less than two `WINDOW`.
+    A jump is a stretch of bins with |d| > `SETTLED`, and |d| > `JUMP` in one of them, where d is
+    the mean slip of the `WINDOW` after a bin less that of the one before it. Where the recording is
+    shorter than two `WINDOW`, there are no jumps.
+
+    Args:
+        slip: Mean slip ratio of each bin, shape (bins,) [-].
     """
     w = round(WINDOW / BIN)
     jumping = np.zeros(len(slip), dtype=bool)
@@ -76,7 +79,8 @@ def _jumping(slip: Array) -> NDArray[np.bool_]:
     d = np.abs(total[2 * w :] - 2 * total[w:-w] + total[: -2 * w]) / w  # d[i] belongs to bin i + w
     for begin, end in _stretches(d > SETTLED):
         if d[begin:end].max() > JUMP:
-            # A jump begins to enter the windows w bins before it is reached.
+            # d rises above SETTLED w bins before the jump, as soon as the jump enters the window
+            # ahead; the sweep before is cut only from w / 2 bins before the jump on.
             first = min(begin + w, end) + w // 2 if begin > 0 else 0
             jumping[first : end + w if end < len(d) else None] = True
     return jumping

@@ -126,9 +126,10 @@ class CanLink:
     def arrivals(self, messages: Sequence[can.Message]) -> list[float]:
         """Estimate the arrival time of each frame just read, by host time, non-decreasing [s].
 
-        A frame arrived after the bus was last found empty. Its time stamp gives the arrival where
-        the interface takes it from the system's clock, as the kernel does for socketcan. Otherwise
-        the frames are spread evenly between that moment and now.
+        A frame arrived between the moment at which the bus was last found empty and now. Its time
+        stamp gives the arrival where the interface takes it from the system's clock, as the kernel
+        does for socketcan, and it lies in that interval up to `STAMP_ERROR`. Otherwise the frames
+        are spread evenly over the interval.
         """
         now, wall = self._clock.now(), time.time()
         longest = now - self._since
@@ -177,6 +178,7 @@ class CanLink:
         )
 
     def _send(self, message: can.Message) -> bool:
+        """Send a frame; return False, and begin to reconnect, where the bus is disconnected."""
         if self._bus is None:
             return False
         try:
@@ -240,6 +242,7 @@ class CanLink:
         return message is not None
 
     def _keep(self, message: can.Message, messages: list[can.Message]) -> None:
+        """Append a data frame with an 11-bit id, count a damaged frame, and drop all others."""
         # python-can's slcan returns truncated lines, with fewer data bytes than their length says.
         cut = not message.is_remote_frame and len(message.data) != message.dlc
         if message.is_error_frame or cut:
@@ -254,6 +257,7 @@ class CanLink:
         return can.Bus(channel=channel, interface=interface, bitrate=self._bitrate)
 
     def _drop_connection(self) -> None:
+        """Close a bus that failed; `_reconnect` may reopen it after `RETRY_AFTER`."""
         self._disconnect()
         self._retry_at = self._clock.now() + RETRY_AFTER
 

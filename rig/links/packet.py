@@ -47,7 +47,7 @@ class CobsFramer:
         self.resynchronised = 0
         self._longest = longest
         self._tail = b""
-        self._joined = False
+        self._joined = False  # whether a zero has arrived, after which whole frames follow
         self._out_of_sync = False
 
     def feed(self, data: bytes) -> list[bytes]:
@@ -81,6 +81,7 @@ class CobsFramer:
         self._out_of_sync = False
 
     def _decode(self, piece: bytes) -> bytes | None:
+        """Decode the bytes between two zeros; None where they are damaged or empty."""
         joined, self._joined = self._joined, True
         if not piece:  # two ends in a row: a sender may begin with one to end noise
             return None
@@ -162,6 +163,7 @@ class TrailerFramer:
 HEADER: Final = struct.Struct("<BII")
 CHECKSUM: Final = struct.Struct("<I")
 WRAP: Final = 1 << 32
+"""Modulus of the sequence number and of the device time [ticks]."""
 TICK: Final = 1e-6
 """One tick of the device time [s]."""
 LONGEST_BODY: Final = 200

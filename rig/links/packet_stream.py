@@ -120,6 +120,7 @@ class PacketStream(LinkedStream[ByteLink]):
         return self._link.write(encode_packet(packet))
 
     def _sample(self, content: bytes, now: float) -> Sample | None:
+        """Return the sample of a decoded frame; None, counted by its fault, if there is none."""
         packet = decode_packet(content)
         if packet is None:
             self._framer.refuse()
@@ -138,6 +139,7 @@ class PacketStream(LinkedStream[ByteLink]):
         return Sample(now, self._device_time.unwrap(packet.ticks), sequence, counts)
 
     def _refuse_foreign(self, packet: Packet) -> None:
+        """Count a packet of another kind or length; raise at `MAX_FOREIGN` without any sample."""
         self._refused += 1
         self._foreign += 1
         if self._received == 0 and self._foreign >= MAX_FOREIGN:

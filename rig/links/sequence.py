@@ -112,6 +112,11 @@ class SequenceTracker:
         return kept, np.array([n for n in one_by_one if n is not None], np.int64)
 
     def _plausible(self, ahead: int, elapsed: float) -> bool:
+        """Return whether a jump by `ahead` is a loss rather than a restart of the device.
+
+        With a rate, the jump is at most `SLACK` plus twice the samples of the time `elapsed` [s]
+        since the previous read; without one, it is less than half of the modulus.
+        """
         if self._rate is None:
             return ahead < self._modulus // 2
         return ahead <= SLACK + 2 * self._rate * elapsed

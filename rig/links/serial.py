@@ -107,6 +107,7 @@ class SerialLink:
         return True
 
     def _connect(self) -> serial.Serial:
+        """Open the port, exclusively where it is a device."""
         opened = serial.serial_for_url(
             self.port, do_not_open=True, baudrate=self._baudrate, timeout=0,
             write_timeout=WRITE_TIMEOUT,
@@ -123,6 +124,7 @@ class SerialLink:
             port.close()
 
     def _drop_connection(self) -> None:
+        """Close a port that failed; `_reconnect` may reopen it after `RETRY_AFTER`."""
         self._disconnect()
         self._retry_at = self._clock.now() + RETRY_AFTER
 

@@ -99,6 +99,7 @@ class _Socket:
         self.port = f"socket://127.0.0.1:{self.number}"
 
     def exchange(self, data: bytes) -> bytes:
+        """Send bytes to the client, and return those that it has sent; none without a client."""
         if self._client is None and not self._accept():
             return b""
         try:
@@ -112,6 +113,7 @@ class _Socket:
         self._listener.close()
 
     def _accept(self) -> bool:
+        """Accept a waiting client; return whether there was one."""
         try:
             self._client, _ = self._listener.accept()
         except BlockingIOError:
@@ -121,6 +123,7 @@ class _Socket:
         return True
 
     def _through(self, data: bytes) -> bytes:
+        """Send bytes to the client and return what it has sent; drop a client that has closed."""
         client = self._client
         if client is None:
             return b""
@@ -201,6 +204,7 @@ class PortServer:
             self._folder.cleanup()
 
     def _make(self) -> _Terminal | _Socket:
+        """Create the port, with the name or number that it had before, if any."""
         if self._as_socket:
             end = _Socket(self._number)
             self._number = end.number
@@ -210,6 +214,7 @@ class PortServer:
         return _Terminal(Path(self._folder.name) / "port")
 
     def _tick(self, now: float) -> None:
+        """Poll the twin with the bytes last received, and exchange bytes with the port."""
         data = self._twin.poll(now, self._received)
         with self._lock:
             self._received = self._end.exchange(data) if self._end is not None else b""

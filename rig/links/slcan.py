@@ -111,6 +111,7 @@ class SlcanAdapter:
         return out
 
     def _execute(self, line: bytes) -> bytes:
+        """Execute one line from the host, without its carriage return, and return the answer."""
         command = line[:1]
         if command in (b"t", b"T", b"r", b"R"):
             return self._pass_on(line)
@@ -125,6 +126,7 @@ class SlcanAdapter:
         return REFUSED
 
     def _pass_on(self, line: bytes) -> bytes:
+        """Send the frame of a line to the bus; refuse an invalid one, or all while not open."""
         try:
             message = decode_frame(line)
         except ProtocolError:

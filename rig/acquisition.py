@@ -143,6 +143,7 @@ class Acquisition:
                 self.failure = RigTimeout("the reader thread did not end", waited=JOIN_TIMEOUT)
 
     def _run(self) -> None:
+        """Read until a stop, the end time or an exception, which is kept in `failure`."""
         device = self._device
         try:
             guard = SilenceGuard(self.name, limit=SILENCE, now=self._clock.now())
@@ -158,6 +159,10 @@ class Acquisition:
             self.failure = failure
 
     def _read(self, guard: SilenceGuard, wait: float) -> None:
+        """Pass the samples of one read to sink, tap and clock watch; then check limits and link.
+
+        The samples are stored before the limit check, which may raise, so that the log has them.
+        """
         device = self._device
         samples = device.stream.read(wait)
         if samples:
@@ -218,7 +223,7 @@ def acquiring(
     """
     readers = {d.name: Acquisition(d, sink=sink, start=start, clock=clock) for d in devices}
     with ExitStack() as stack:
-        for device in devices:
+        for device in devices:  # first in, last out: called after every reader has stopped
             if device.at_end is not None:
                 stack.callback(device.at_end)
         for reader in readers.values():

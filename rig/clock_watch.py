@@ -21,7 +21,7 @@ MOST_BINS: Final = 60
 FEWEST_BINS: Final = 5
 """Least number of bins whose scatter is taken for that of the samples."""
 SMALLEST_SD: Final = 1e-9
-"""Least scatter of the samples' times [s]."""
+"""Lower bound of the samples' scatter, since exact times would divide by zero [s]."""
 DRIFT_SD: Final = 2e-3
 """Prior standard deviation of the clock drift: quartz drifts far less, oscillators of bare
 micro-controllers a few times as much [-]."""
@@ -52,7 +52,7 @@ class ClockFit:
 
     @property
     def tells_drift(self) -> bool:
-        """Whether the samples tell more of the drift than was known before."""
+        """Whether the samples determine the drift: `drift_sd` is below half of its prior's."""
         return self.drift_sd < DRIFT_SD / 2
 
     def to_host(self, device_time: Array) -> Array:
@@ -73,12 +73,13 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
         host_time: Host time at which each sample was read, shape (n,) [s].
 
     Returns:
-        Offset, drift and delay. The uncertainties are those of the regression with the prior; fewer
-        than `FEWEST_BINS` bins do not show how much samples scatter.
+        Offset, drift and delay. The uncertainties are those of the regression with the prior. With
+        fewer than `FEWEST_BINS` bins, whose scatter says little, `delay` stands for the scatter and
+        `drift_sd` is `DRIFT_SD`.
 
     Raises:
-        ProtocolError: There are fewer than `FEWEST` samples, or the device time is the same in the
-            first bin and in the last one.
+        ProtocolError: There are fewer than `FEWEST` samples, or the device time does not increase
+            from the first bin to the last one.
 
     >>> device = np.arange(100) / 10
     >>> fit = fit_clock(device, 5.0 + 1.0001 * device)
@@ -101,14 +102,15 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
     centre = device_time[least].mean()
     x = device_time[least] - centre
     level, slope = lag[least].mean(), float(x @ lag[least] / (x @ x))
-    apart = lag[least] - level - slope * x
-    drift = slope / (1 + np.var(apart) / (DRIFT_SD**2 * (x @ x)))
+    residuals = lag[least] - level - slope * x
+    # Posterior mean: the slope, of variance var(residuals) / x'x, is shrunk towards the prior's 0.
+    drift = slope / (1 + np.var(residuals) / (DRIFT_SD**2 * (x @ x)))
     offset = float(level - drift * centre)
     late = float(np.median(lag - (offset + drift * device_time)))
     if len(least) < FEWEST_BINS:
         sd, drift_sd = late, DRIFT_SD
     else:
-        sd = np.sqrt(apart @ apart / (len(least) - 2))
+        sd = np.sqrt(residuals @ residuals / (len(least) - 2))
         drift_sd = 1 / np.hypot(np.sqrt(x @ x) / max(sd, SMALLEST_SD), 1 / DRIFT_SD)
     return ClockFit(
         offset, float(drift), late,
@@ -151,6 +153,7 @@ class ClockWatch:
             self._keep(latest.device_time, latest.host_time - self._start)
 
     def _keep(self, device: float, host: float) -> None:
+        """Append a pair; of two pairs in the same `BUCKET` keep the one with the smaller delay."""
         if self._host and host // BUCKET == self._host[-1] // BUCKET:
             if host - device >= self._host[-1] - self._device[-1]:
                 return
@@ -160,10 +163,11 @@ class ClockWatch:
         self._host.append(host)
 
     def result(self) -> Mapping[str, float] | None:
-        """Fit the attributes of `ClockFit`, by their names, with host time from `start` on.
+        """Fit offset and drift of the device's clock; return `ClockFit`'s attributes by name.
 
-        After restarts of the device the pairs since the last restart with at least `FEWEST` pairs
-        after it are fitted. None where there are fewer pairs, or the device sends no time.
+        Host time counts from `start`. Where the device has restarted, only pairs after its last
+        restart are fitted, or after an earlier one where fewer than `FEWEST` followed the last.
+        None where there are fewer pairs than that at all, or the device sends no time.
 
         Raises:
             ProtocolError: The device's clock stands still.
@@ -182,7 +186,8 @@ def _last_clock(device: Array, host: Array) -> tuple[Array, Array]:
     The lag, host minus device time, grows where a sample is read late or the device restarts. The
     device restarted where all later lags are larger by more than `RESTART_JUMP`. A pair was read
     late, and is left out, where a later lag is smaller by more than that. If fewer than `FEWEST`
-    pairs remain, those before the restart are searched in the same way. The result can have fewer.
+    pairs remain, those before the restart are searched in the same way. If no part has `FEWEST`
+    pairs, the result has fewer.
     """
     while len(device) >= FEWEST:
         lag = host - device
@@ -202,8 +207,8 @@ def sample_times(stream: SampleColumns) -> Array:
 
     Between restarts of the device (host minus device time jumps by more than `RESTART_JUMP`), the
     result is `fit_clock`'s map of the device times; missing ones are interpolated over the sequence
-    number. It is the time of reading where fewer than `FEWEST` samples have a device time, or a
-    part has fewer samples than that or a clock that stands still.
+    number. All samples keep their `host_time` where fewer than `FEWEST` have a device time; so do
+    those between two restarts where they are fewer than that, or the device's clock stands still.
 
     Args:
         stream: A recorded stream.

@@ -23,6 +23,7 @@ from rig.errors import InUse
 LONGEST: Final = 300
 """Longest description of an owner that is stored and shown [characters]."""
 _PSEUDO_TERMINALS = "/dev/pts"
+"""Folder of the devices of pseudo-terminals."""
 
 
 @dataclass
@@ -94,9 +95,15 @@ class Exclusive:
         self.release()
 
     def _lock(self) -> int:
+        """Lock the file, describe this process in it, and return its handle, which stays open.
+
+        Raises:
+            InUse: Another handle has the lock; the message describes its owner.
+            OSError: The file cannot be created or opened.
+        """
         handle = _open(self._file)
         if not try_lock(handle):
-            owner = _readable(os.pread(handle, 4 * LONGEST, 0))
+            owner = _readable(os.pread(handle, 4 * LONGEST, 0))  # UTF-8: up to 4 bytes a character
             os.close(handle)
             raise InUse(
                 f"{self._what} is in use by {owner or 'another program'}; end that program first, "
@@ -121,11 +128,11 @@ def device_lock(name: str) -> Exclusive:
 
 
 def _device_path(path: str) -> str:
-    """Follow the links of a path to the device, but not the last one to a pseudo-terminal.
+    """Follow the symbolic links of a path to the device, but not the last to a pseudo-terminal.
 
-    The system gives the number of a pseudo-terminal to another program as soon as it is closed,
-    also while somebody waits for the twin behind it to be plugged in again. The name of the link is
-    the twin's own.
+    The port of a simulated device is a link to a pseudo-terminal. When that is closed, as by
+    unplugging the twin, the system may give its number to another program, and a lock on the number
+    would then exclude the wrong program. The name of the link belongs to the twin alone.
     """
     real = os.path.realpath(path)
     if not Path(real).is_relative_to(_PSEUDO_TERMINALS):

@@ -98,6 +98,7 @@ def require_device(link: str, profile: str) -> None:
 
 
 def _find(name: str) -> Traversable:
+    """Find a profile by path or, where there is no such file, among the shipped ones by name."""
     path = Path(name)
     if path.is_file():
         return path

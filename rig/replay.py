@@ -87,10 +87,12 @@ class ReplayStream:
         self._began = None
 
     def _due(self, index: int) -> float:
+        """Compute the host time at which a sample is returned, at the recorded pace [s]."""
         after = self._samples[index].host_time - self._samples[0].host_time
         return (self._began or 0.0) + after
 
     def _count_gap(self, index: int) -> None:
+        """Count sequence numbers missing between a sample and the one before it as lost."""
         last = self._samples[index - 1].sequence if index else None
         number = self._samples[index].sequence
         if last is not None and number is not None:

@@ -63,12 +63,15 @@ class SampleColumns(Sequence[Sample]):
 def _sample(
     host: float, device: float, number: int, status: int, channel: int, counts: list[float]
 ) -> Sample:
+    """Build the sample of one row; a NaN device time and a negative number become None."""
     time = None if math.isnan(device) else device
     return Sample(host, time, None if number < 0 else number, tuple(counts), status, channel)
 
 
 def as_columns(samples: Sequence[Sample], dtype: DTypeLike = float) -> SampleColumns:
     """Convert samples to columns; columns are returned unchanged.
+
+    Without samples every column is empty, and the counts have the shape (0,).
 
     Args:
         samples: Samples of one stream, with equal numbers of counts.

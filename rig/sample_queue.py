@@ -52,8 +52,8 @@ class LossyTap:
     A viewer that is slow, hangs or raises does not block the reader thread.
 
     Args:
-        limit: Largest number of samples that `take` returns; fewer than that plus those of one read
-            are stored.
+        limit: Largest number of samples that `take` returns. Whole reads are stored, so that the
+            oldest one stored may extend beyond the limit.
     """
 
     def __init__(self, *, limit: int = 1000) -> None:

@@ -48,11 +48,17 @@ from rig.zebro.profile import LegProfile
 from rig.zebro.simulated_legs import SimulatedLegs
 
 _channels = itertools.count()
+"""Numbers for the names of virtual CAN buses."""
 
 
 def _byte_robot(
     legs: SimulatedLegs, *, faults: Faults = PERFECT_LINE, rng: np.random.Generator
 ) -> ByteTwin:
+    """Return the twin of legs on a serial line.
+
+    Raises:
+        ProfileError: The layout of the legs' profile is `can` or `table`.
+    """
     layout, name = legs.profile.layout, legs.profile.name
     if LEGS[layout].link == "can":
         raise ProfileError(f"no serial port carries layout '{layout}'", file=name)
@@ -214,4 +220,5 @@ def rig_on_bus(
 
 
 def _new_channel() -> str:
+    """Return a channel name for a virtual CAN bus that no other twin of this process has."""
     return f"zebro-lab-twin-{next(_channels)}"

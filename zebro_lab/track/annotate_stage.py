@@ -108,6 +108,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
 
 
 def _templates(request: AnnotateRequest) -> tuple[MarkedTop, ...]:
+    """Return the template that --corners marks in --photo; none if no corners are given."""
     if request.corners is None:
         return ()
     corners = tuple(_pair(text, "--corners") for text in request.corners.split())
@@ -123,6 +124,10 @@ def _templates(request: AnnotateRequest) -> tuple[MarkedTop, ...]:
 
 
 def _plate(request: AnnotateRequest) -> TopPlate:
+    """Parse the size of the robot's top from --plate, LENGTHxWIDTH@HEIGHT above the body's centre.
+
+    Without --plate it is the body's length and width at half the body's height, of robot.toml.
+    """
     margin = option_to_si(request.margin, "m", key="--margin", usual=LARGEST_PRINT)
     if request.plate is None:
         described = RobotFile() if request.robot is None else read_robot_file(request.robot)
@@ -142,6 +147,7 @@ def _plate(request: AnnotateRequest) -> TopPlate:
 
 
 def _clicks(request: AnnotateRequest) -> Mapping[str, Mapping[str, Click]]:
+    """Parse --click PHOTO:NAME=U,V into pixels by photograph and name of the floor's point."""
     clicks: dict[str, dict[str, Click]] = {}
     for text in request.clicks:
         place, _, pixel = text.rpartition("=")
@@ -160,6 +166,7 @@ def _corrections(request: AnnotateRequest) -> tuple[Correction, ...]:
 
 
 def _move(text: str) -> Move:
+    """Parse --move PHOTO:X,Y,YAW [m, m, deg] into a correction, whose yaw is in radians."""
     photo, _, place = text.rpartition(":")
     numbers = _numbers(place, "--move")
     if not photo or len(numbers) != 3:
@@ -175,6 +182,7 @@ def _pair(text: str, key: str) -> Click:
 
 
 def _numbers(text: str, key: str) -> list[float]:
+    """Parse finite numbers separated by commas; `key` is the option that an error names."""
     try:
         numbers = [float(part) for part in text.split(",")]
     except ValueError as error:
@@ -192,6 +200,7 @@ def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
 
 
 def _require_photo(photo: str, names: Sequence[str]) -> None:
+    """Raise if there is no such photograph; `NAME#NUMBER` is an exposure or frame of NAME."""
     # Exposures and frames are known only after tracking: walk.jpg#3 is one of walk.jpg.
     if photo in names or photo.rpartition(_EXPOSURE)[0] in names:
         return

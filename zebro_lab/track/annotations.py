@@ -33,9 +33,10 @@ class Annotations:
     corrections: tuple[Correction, ...] = ()
 
     def merged(self, later: "Annotations") -> "Annotations":
-        """Return both: clicks of `later` prevail, also its templates of the same photographs.
+        """Merge with later annotations, which replace earlier ones of the same thing.
 
-        Its corrections are appended.
+        Clicks are replaced by photograph and point, templates by photograph; corrections are
+        appended.
         """
         tops = {top.photo: top for top in (*self.templates, *later.templates)}
         names = {**self.clicks, **later.clicks}
@@ -87,6 +88,7 @@ def _templates(table: SettingsTable) -> tuple[MarkedTop, ...]:
 
 
 def _template(table: SettingsTable) -> MarkedTop:
+    """Read one template: corners [px] and size [m] of the robot's top, optional margins [m]."""
     found = table.value("corners_px", [])
     if not isinstance(found, list) or len(found) != 4:
         raise table.fault("expected four pixels: front left, front right, rear right, rear left "
@@ -116,6 +118,7 @@ def _pixel(table: SettingsTable, key: str) -> Click:
 
 
 def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
+    """Read the `[[correction]]` tables in order; errors count them from 1."""
     entries = table.value("correction", [])
     if not isinstance(entries, list):
         raise table.fault("expected [[correction]] tables", "correction")

@@ -11,6 +11,7 @@ from tracking.camera import Camera, CameraCalibration
 from zebro_lab.files.settings_table import SettingsTable, fill_in, read_settings
 
 CAMERA_FILE = "camera.toml"
+# Keys that are accepted, but not used.
 _FOR_PEOPLE = ("lens_model", "rms_px", "corner_noise_px", "smooth_error_px", "coverage", "photos")
 _SDS = (("focal_sd", 2), ("centre_sd", 2), ("distortion_sd", 5))
 _PAIRS = np.triu_indices(9, 1)
@@ -18,10 +19,11 @@ _ROUNDED = 1e-4  # negative eigenvalue of correlations, by rounding
 
 
 def read_camera_file(file: Path) -> Camera:
-    """Read and validate the lens of a `camera.toml`: size, camera matrix, distortion (0 without).
+    """Read and validate the lens of a `camera.toml`: size, camera matrix, distortion, covariance.
 
-    The covariance is that of the standard deviations and correlations in `[calibration]`; 0 without
-    standard deviations, and without correlations that of independent errors.
+    Distortion is zero if the file has none. The covariance is computed from the standard deviations
+    and correlations in `[calibration]`: if it has no standard deviations, the covariance is zero;
+    if it has no correlations, diagonal.
 
     Raises:
         NotFound: The file does not exist.
@@ -86,7 +88,7 @@ def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> 
         photos: SHA-256 of the photographs used in the calibration, by name.
     """
     camera, sd = fit.camera, fit.sd
-    unit = np.where(sd > 0, sd, 1.0)
+    unit = np.where(sd > 0, sd, 1.0)  # a term that was left out has sd 0, and correlations of 0
     correlation = (camera.covariance / np.outer(unit, unit))[_PAIRS]
     return fill_in(_TEMPLATE, {
         "size": camera.size,

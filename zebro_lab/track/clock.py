@@ -95,7 +95,12 @@ def unknown_start(advice: str) -> tuple[str, ...]:
 
 
 def _dated_apart(zero: float, manifest: RunManifest) -> tuple[str, ...]:
-    """Return a note if the first photograph, at `zero` [s], and the run are over a day apart."""
+    """Return a note if run and first photograph are over a day apart.
+
+    Args:
+        zero: Time of the first photograph since 1970, by the camera's clock [s].
+        manifest: Manifest of the run.
+    """
     days = abs(zero - manifest.began.timestamp()) / 86_400
     if days <= 1.0:
         return ()
@@ -106,12 +111,18 @@ def _dated_apart(zero: float, manifest: RunManifest) -> tuple[str, ...]:
 
 
 def _by_a_clock(times: PhotoTimes) -> bool:
+    """Return whether the first time is above `_CLOCK`: counted from 1970, not from 0."""
     return len(times.t) > 0 and float(times.t[0]) > _CLOCK
 
 
 def _as_given(
     times: PhotoTimes, start: datetime | None, manifest: RunManifest | None, request: TimeRequest
 ) -> CountedTimes:
+    """Return times that are not those of a clock unchanged, with a note if their origin is unknown.
+
+    The note is for photographs of a run; a table's times are counted from its start. A given moment
+    `start` raises, since only times of a clock can be counted from it.
+    """
     if start is not None:
         raise SettingsError(
             f"the photographs' times are not those of a camera's clock ({times.source}), which "

@@ -105,7 +105,10 @@ def track_of_table(table: RawTable) -> TrackFile:
 
 
 def _joint(table: RawTable, poses: Poses) -> tuple[JointCovariance, tuple[str, ...]]:
-    """Return the poses' covariance with each other, independent without a file of it, and notes."""
+    """Return the joint covariance of all poses, and notes.
+
+    It is read from the file beside a `track.csv` with yaw; without one, poses are independent.
+    """
     covariance = _covariance(table)
     if table.path.name == TRACK_CSV and poses.has_yaw:
         return read_joint(table.path, poses.t, covariance)
@@ -143,6 +146,7 @@ def tum_lines(poses: Poses) -> str:
 
 
 def _poses(table: RawTable, file: Path) -> Poses:
+    """Convert columns of time, x and y to poses; yaw is unwrapped, NaN without its column."""
     si_units = ("s", "m", "m")
     t, x, y = (
         _numbers(table, _present(table, names), unit)
@@ -158,6 +162,7 @@ def _poses(table: RawTable, file: Path) -> Poses:
 
 
 def _present(table: RawTable, names: Sequence[str]) -> str:
+    """Return the first of two accepted column names that the table has; raise if it has neither."""
     for name in names:
         if name in table.columns:
             return name
@@ -173,6 +178,7 @@ def _numbers(table: RawTable, name: str, si_unit: str) -> Array:
 
 
 def _covariance(table: RawTable) -> Array:
+    """Read the covariance of x, y and yaw of each pose, shape (n, 3, 3); check its eigenvalues."""
     upper = np.column_stack([_numbers(table, *each) for each in COVARIANCE.items()])
     covariance = np.empty((len(upper), 3, 3))
     for k, (i, j) in enumerate(zip(*np.triu_indices(3), strict=True)):

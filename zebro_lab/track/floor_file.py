@@ -61,6 +61,10 @@ def _common(table: SettingsTable) -> dict[str, float]:
 
 
 def _marker(markers: SettingsTable, number: str, common: Mapping[str, float]) -> FloorMarker:
+    """Read the marker with this number; what its table leaves out comes from `common`.
+
+    The side must be given in one of the two. Angles are in degrees in the file.
+    """
     if not number.isdecimal() or len(number) > _MOST_DIGITS:
         raise markers.fault("is not a marker's number; expected up to 6 digits, as in 10", number)
     table = markers.table(number)

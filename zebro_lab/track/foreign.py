@@ -64,7 +64,7 @@ def read_foreign_track(
         mapping: Header, unit and sign of each column of a table.
         request: How a trajectory is read.
         topic: Topic to read from a ROS log; None for one of `topics`, else the only one with poses.
-        topics: Topics of a ROS log to prefer, also such of other messages.
+        topics: Topics of a ROS log to prefer; those without poses are ignored.
         sd: Standard deviations of positions [m] and headings [rad] (None if not stated) of the
             poses of a file without covariance, independent of one another; None if not known.
 
@@ -99,7 +99,11 @@ def read_foreign_track(
 def _planar_columns(
     trajectory: Trajectory, sd: tuple[float, float | None] | None
 ) -> dict[str, Array]:
-    """Return the columns of `track.csv` that are known of a trajectory in its plane, in SI."""
+    """Return the columns of `track.csv` that are known of a trajectory in its plane, in SI.
+
+    A covariance is left out unless complete. A table's is also left out if its plane is not xy,
+    since its columns refer to x and y of the table.
+    """
     poses = trajectory.poses
     x, y = poses.position.T
     known = {**trajectory.columns, "x_m": x, "y_m": y}
@@ -121,8 +125,8 @@ def _covariance(
     """Return columns of a covariance by standard deviations of position [m] and heading [rad].
 
     Raises:
-        SettingsError: The track has a covariance; or a heading, whose standard deviation is not
-            stated, or none.
+        SettingsError: The track already has a covariance; it has headings, but `yaw` is None; or it
+            has no headings, but `yaw` is given.
     """
     has_yaw = "yaw_rad" in known
     for key, wrong, problem in (

@@ -74,8 +74,8 @@ def body_prior(
 
     Args:
         described: Content of `robot.toml`.
-        height: Mean height of the body's origin over a walk [m]; None for that at which the robot
-            stands, by its marker.
+        height: Mean height of the body's origin over a walk [m]; None to compute the standing
+            robot's from the measured height of its marker.
         mean_height_sd: Standard deviation of that mean [m].
         height_sd: Standard deviation of the height about its mean [m].
 

@@ -83,7 +83,7 @@ def _of_others(file: Path, why: str) -> str:
 
 
 def _read(file: Path) -> tuple[Array, JointCovariance]:
-    """Return times and joint covariance; raise DataError if they are none."""
+    """Return times and joint covariance; raise `DataError` if an array is invalid."""
     arrays = read_arrays(file, _NAMES, advice=_AGAIN)
     parts = {name: np.asarray(arrays[name], dtype=float) for name in _NAMES}
     t = parts.pop("t")

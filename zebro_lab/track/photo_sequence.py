@@ -75,8 +75,11 @@ def open_photos(
     progress: Progress | None = None,
     frames: int | None = None,
 ) -> Iterator[PhotoSequence]:
-    """Find the photographs and their times, of a folder without the one of the clock.
+    """Find photographs and their times; leave out copies and pictures without a time.
 
+    In a folder, the photograph given as `--clock` is skipped, as it does not show the walk. Copies,
+    equal byte for byte, are left out unless a table gives the times. If neither a table nor an
+    interval gives them, pictures without EXIF time are left out, provided that under half lack it.
     Frames of a video are kept in a temporary folder until the `with` statement ends.
 
     Args:
@@ -92,8 +95,8 @@ def open_photos(
         NotFound: `origin` does not exist.
         SettingsError: A video is given together with an interval, a table of times or a clock, or
             photographs with a step between frames.
-        DataError: The folder holds only the photograph of the clock, or frames of a video cannot be
-            written to the temporary folder.
+        DataError: The folder holds only the photograph given as `--clock`, or frames of a video
+            cannot be written to the temporary folder.
         TrackingError: The folder has no photograph, times are missing, or a file is unreadable.
         TrackStopped: A stop was requested.
     """
@@ -176,6 +179,7 @@ def _given_times(paths: Sequence[Path], request: TimeRequest) -> PhotoTimes | No
 
 
 def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
+    """Return the photographs of a folder in order of time, as described in `open_photos`."""
     clock = None if request.clock is None else request.clock.resolve()
     paths = tuple(path for path in find_photos(folder) if path.resolve() != clock)
     if not paths:
@@ -204,7 +208,10 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
 
 
 def _copies(paths: Sequence[Path]) -> Mapping[str, str]:
-    """Return a reason to leave out each equal file with a time, but that of the shortest name."""
+    """Return a reason by name to leave out each copy of another file, equal byte for byte.
+
+    Of equal files the one with the shortest name is kept. Files without EXIF time are not compared.
+    """
     sizes = Counter(path.stat().st_size for path in paths)
     originals: dict[str, str] = {}
     copies = {}
@@ -218,7 +225,11 @@ def _copies(paths: Sequence[Path]) -> Mapping[str, str]:
 
 
 def _require_as_exif(paths: Sequence[Path], times: PhotoTimes, request: TimeRequest) -> None:
-    """Raise `SettingsError` if EXIF times of all photographs are of another order of interval."""
+    """Raise `SettingsError` if given and EXIF times differ in order of magnitude.
+
+    Their median intervals may differ by a factor of up to `MOST_APART`. Nothing is checked unless
+    all photographs, two or more, have EXIF times.
+    """
     taken = [exif_time(path) for path in paths]
     t = np.sort([each[0] for each in taken if each is not None])
     if len(t) < 2 or len(t) < len(paths):
@@ -259,6 +270,7 @@ def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
 
 
 def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
+    """Convert times of the camera's clock to the computer's, by a photograph of its code."""
     offset = clock_offset(clock)
     # The offset's error is common to all photographs: it is stated once, not added to each.
     ahead = f"camera's clock {offset.seconds:+.3f} s (sd {offset.sd:.3f} s) ahead of the computer's"
@@ -268,6 +280,15 @@ def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
 def _of_video(
     video: Path, folder: Path, every: float, most: int | None, progress: Progress | None
 ) -> PhotoSequence:
+    """Write frames of a video as PNG into a folder; return them with their time stamps.
+
+    Args:
+        video: The video.
+        folder: Existing folder for the frames.
+        every: Least time between two frames [s]; 0 takes all.
+        most: Largest number of frames; None for all.
+        progress: Where each frame is reported, or None.
+    """
     photos, t, sd = [], [], []
 
     for frame in islice(video_frames(video, every=every), most):
@@ -290,6 +311,7 @@ def _of_video(
 
 
 def _require_meant_for(request: TimeRequest, *, is_video: bool) -> None:
+    """Raise if a time option is given that has no effect on photographs, or on a video."""
     if not is_video:
         given, reason = {"--every": request.every}, "photographs, which are all taken"
     else:
@@ -303,6 +325,7 @@ def _require_meant_for(request: TimeRequest, *, is_video: bool) -> None:
 
 
 def _simulated(path: Path) -> str | None:
+    """Return "sim:photographs" if EXIF data name the camera's make "simulated", else None."""
     # Simulated photographs of tests and demonstrations say so in the camera's make.
     try:
         with open_picture(path) as picture:

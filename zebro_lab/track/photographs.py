@@ -155,6 +155,7 @@ def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:
 
 
 def _camera(inputs: Mapping[Path, str], folder: Path) -> Camera:
+    """Read the track's lens from its inputs: the first TOML file that is a `camera.toml`."""
     for path, digest in inputs.items():
         if path.suffix == ".toml" and path.is_file():
             try:

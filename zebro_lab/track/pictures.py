@@ -107,6 +107,11 @@ def seen_marks(photo: PlacedPhoto, floor: FloorMap, detection: Detection | None)
 
 
 def _path_px(track: Track, photo: PlacedPhoto) -> tuple[Array, Array]:
+    """Project the path, and the tips of arrows along its headings, into a photograph.
+
+    Returns:
+        Pixels of the n poses and of the n tips, each with a row of NaN inserted at each gap.
+    """
     height = np.array([seen.z for seen in track.observations])
     xy, yaw = track.poses[:, :2], track.poses[:, 2]
     step = _AHEAD * np.column_stack((np.cos(yaw), np.sin(yaw)))
@@ -123,6 +128,7 @@ def _broken(rows: Array, track: Track) -> Array:
 def _draw_map(
     file: Path, track: Track, photo: PlacedPhoto, floor: FloorMap, title: str, simulated: bool
 ) -> None:  # fmt: skip
+    """Draw path and 90 % ellipses over the rectified floor, with a margin around path and marks."""
     places = [track.poses[:, :2], *(mark.points[:, :2] for mark in floor.marks.values())]
     low = np.min([place.min(axis=0) for place in places], axis=0) - _MARGIN
     high = np.max([place.max(axis=0) for place in places], axis=0) + _MARGIN
@@ -144,6 +150,12 @@ def _draw_map(
 
 
 def _time_labels(track: Track, poses: Array) -> Sequence[str]:
+    """Return a label for each row of `poses`: the time of about `_MOST_LABELS`, else empty.
+
+    Args:
+        track: The track.
+        poses: Its poses, with a row of NaN at each gap.
+    """
     every = max(1, round(len(track.t) / _MOST_LABELS))
     labels = iter(f"{t:.1f} s" if k % every == 0 else "" for k, t in enumerate(track.t))
     return ["" if np.isnan(pose[0]) else next(labels) for pose in poses]

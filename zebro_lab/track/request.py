@@ -20,6 +20,7 @@ VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
 
 
 def _moment(text: str) -> datetime:
+    """Parse --start; the time, which has no zone on a camera's clock, is labelled UTC."""
     try:
         moment = datetime.fromisoformat(text)
     except ValueError as error:

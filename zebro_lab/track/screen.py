@@ -52,7 +52,10 @@ def track_lines(result: TrackResult) -> list[str]:
 
 
 def _uncertainty_lines(track: Track) -> list[str]:
-    """Format which part of the variance all photographs share, and the largest cause of it."""
+    """Format the share of the variance that is of errors common to all photographs.
+
+    Where it is above `_WORTH_ADVICE`, the largest cause is named, with advice.
+    """
     (position, yaw), causes = shared_part(track), contributions(track)
     kinds = (
         ("x and y", position, {each: each.position for each in causes}),

@@ -43,7 +43,8 @@ PREVIEW = picture("track --preview")
 def preview(request: TrackRequest, file: Path) -> PhotoPreview:
     """Detect marks in the first photograph by time, draw them in a PNG, and return what was found.
 
-    Without times it is the first by name. In a composite picture no robot is searched.
+    If too many lack an EXIF time and no option gives times, it is the first by name. In a composite
+    picture no robot is searched.
 
     Args:
         request: Options of `zebro-lab track`.
@@ -74,13 +75,20 @@ def preview(request: TrackRequest, file: Path) -> PhotoPreview:
 
 
 def _first_photos(request: TrackRequest, stack: ExitStack) -> PhotoSequence:
-    """Open the photographs, by name if none has a time and no option gives it."""
+    """Open the photographs, of a video the first frame alone; sort them by name without times.
+
+    Names decide if half of the photographs or more lack an EXIF time and no option gives times.
+
+    Args:
+        request: Options of `zebro-lab track`.
+        stack: What closes the photographs, when the caller's `with` statement ends.
+    """
     try:
         return stack.enter_context(open_photos(request.photos, request.times, frames=1))
     except TimesError:
         if request.times != TimeRequest():
             raise
-        by_name = TimeRequest(interval=1.0)
+        by_name = TimeRequest(interval=1.0)  # only orders: a preview has no use for times
         return stack.enter_context(open_photos(request.photos, by_name, frames=1))
 
 
@@ -136,6 +144,7 @@ def track(request: TrackRequest, watcher: Progress, *, workers: int = PROCESSES)
 def _times_of(
     counted: CountedTimes, request: TrackRequest
 ) -> Callable[[Sequence[str]], PhotoTimes]:
+    """Return a function from names to times; only times of exposures depend on the names."""
     times = counted.times
     if times is None:
         return lambda names: exposure_times(names, request.times)
@@ -159,6 +168,7 @@ def _result(
 
 
 def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) -> None:
+    """Write the track folder: poses, joint covariance, refined floor, annotations, pictures."""
     request, found, seen = inputs.request, result.tracked.track, result.tracked.floor
     is_file = sequence.origin.is_file()
     photos = [sequence.origin] if is_file else [photo.path for photo in sequence.photos]
@@ -180,6 +190,7 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
 
 
 def _draw(draft: Path, result: TrackResult, sequence: PhotoSequence, form: PictureFormat) -> None:
+    """Draw the pictures of the track folder over the photograph of the last pose."""
     track, seen = result.tracked.track, result.tracked.floor
     # In the last photograph the robot no longer hides the floor where the path begins.
     last = track.observations[-1].photo.rpartition("#")[0] if sequence.is_composite else None
@@ -219,6 +230,7 @@ def _report(result: TrackResult) -> Mapping[str, object]:
 
 
 def _parts(position: float, yaw: float) -> Mapping[str, float]:
+    """Round shares of the variance of position and of yaw [-] for the manifest."""
     return {"position": round(position, 4), "yaw": round(yaw, 4)}
 
 

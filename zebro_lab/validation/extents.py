@@ -13,7 +13,7 @@ _UNITS: Final = {
 }  # fmt: skip
 """Units of which one number is larger than the other, by the factor between them."""
 _LARGE: Final = 20.0
-"""Factor from which on a wrong friction of a walk does not explain it, a unit does [-]."""
+"""Factor from which on only different units explain the ratio, not a walk's wrong friction [-]."""
 _CLOSE: Final = 0.05
 """Largest relative difference of a ratio from a factor below `_LARGE` [-]."""
 
@@ -22,6 +22,8 @@ def unit_warning(
     reference: tuple[Array, str], estimate: tuple[Array, str], *, near: float
 ) -> tuple[str, ...]:
     """Return a question if the extents of two paths differ by about the factor between two units.
+
+    An extent is the rms distance of the positions from their mean.
 
     Args:
         reference: Positions, shape (n, d) [m], and their name for the warning.

@@ -179,6 +179,7 @@ def write_validation(
 
 
 def _write_tables(draft: Path, runs: Sequence[JudgedRun]) -> None:
+    """Write metrics, errors of each pose, and TUM files of track and prediction of each run."""
     table = [{"run": run.name, "model": r.name, **metrics(r)} for run in runs for r in run.rows]
     to_csv(pd.DataFrame(table), draft / METRICS)
     parts = []

@@ -116,7 +116,7 @@ def _outside(inside: np.ndarray, t: np.ndarray) -> Iterator[str]:
 
 
 def _gaps(t: Array) -> Iterator[str]:
-    """Yield a note if between some of the times `t` [s] are pauses of many usual steps."""
+    """Yield a note if steps between the times `t` [s] are over `_GAP` times their median."""
     steps = np.diff(t)
     usual = float(np.median(steps))
     gaps = steps[steps > _GAP * usual]
@@ -136,7 +136,7 @@ def _mirrored(track: Poses, path: Poses) -> Iterator[str]:
 def _clock(track: Poses, path: Poses) -> Iterator[str]:
     """Yield a warning if the motion shows another clock than the path's, or what is not testable.
 
-    Nothing of a track that turns to the other side, on which there is a warning already.
+    A track that turns to the other side is skipped, since `_mirrored` warns of it.
     """
     if turn_oppositely(path, track):
         return

@@ -82,6 +82,10 @@ def draw_pair(file: Path, judged: JudgedPair) -> None:
 
 
 def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos, form: PictureFormat) -> None:
+    """Draw photographs beside predicted poses, and the band over the floor of the last one.
+
+    Nothing is drawn if the prediction is not from a walk folder.
+    """
     run, walk = shown.run, shown.prediction.walk
     rows = _instants(run, photos, shown.time_offset)
     if walk is None or not len(rows):
@@ -107,6 +111,11 @@ def _instants(run: JudgedRun, photos: TrackedPhotos, time_offset: float) -> NDAr
 
 
 def _shot(run: JudgedRun, walk: WalkedPath, view: PlacedPhoto, t: float) -> Shot:
+    """Return the photograph around the tracked robot, seen from above, and its predicted pose.
+
+    Height, roll, pitch, leg angles and contacts are those of the walk's sample nearest to time `t`
+    [s].
+    """
     tracked, predicted = run.track.at([t]), run.rows[0].path.at([t])
     row = int(np.abs(walk.path.t - t).argmin())
     z, (roll, pitch) = walk.path.position[row, 2], walk.path.orientation[row, :2]
@@ -128,6 +137,7 @@ def _shot(run: JudgedRun, walk: WalkedPath, view: PlacedPhoto, t: float) -> Shot
 def _draw_floor(
     file: Path, run: JudgedRun, view: PlacedPhoto, t: float, *, simulated_photos: bool
 ) -> None:
+    """Draw path, band and track over the rectified floor of a photograph taken at time `t` [s]."""
     path = run.rows[0].path
     places = np.vstack([path.position, run.track.position])
     low, high = places.min(axis=0) - _MARGIN, places.max(axis=0) + _MARGIN

@@ -170,6 +170,7 @@ def read_predicted_walks(
 
 
 def _read(name: str, predicted: Path, tracked: Path, duplicates: tuple[str, ...]) -> PredictedWalk:
+    """Read a walk; its IMU data only if `tracked` is the folder `track` of a run."""
     run = tracked.parent if tracked.name == TRACK and is_recorded(tracked.parent) else None
     tilt = None if run is None else read_recorded_tilt(run)
     prediction, track = read_prediction(predicted), read_track(tracked)

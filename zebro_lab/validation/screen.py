@@ -49,6 +49,10 @@ def print_validated(console: Console, validated: Validated | JudgedPair, out: Pa
 
 
 def _pair(judged: JudgedPair) -> list[str | Table]:
+    """Format warnings, a table of the metrics of two trajectories, and notes.
+
+    Names of metrics come from `_PAIR`, else from the parts of the column, such as `rpe_1m_m`.
+    """
     warnings, notes = warnings_first(judged.notes)
     table = plain_table(judged.title, ("", "unit"), [row.where for row in judged.rows])
     rows = [pair_metrics(row) for row in judged.rows]
@@ -69,6 +73,7 @@ def _pair(judged: JudgedPair) -> list[str | Table]:
 
 
 def _walks(validated: Validated) -> list[str | Table]:
+    """Format warnings, errors, coverage, tilt and notes of each walk, and means over several."""
     parts: list[str | Table] = []
     for run in validated.runs:
         warnings, notes = warnings_first(run.notes)
@@ -83,6 +88,7 @@ def _walks(validated: Validated) -> list[str | Table]:
 
 
 def _table(run: JudgedRun) -> Table:
+    """Format the errors of a walk's prediction and baselines as a table."""
     length = run.rows[0].errors.length
     title = f"{run.name}: {run.rows[0].errors.poses} poses, {length:.3f} m"
     numbers = (
@@ -163,6 +169,7 @@ def _expected(level: float, poses: int) -> str:
 
 
 def _consistency(each: Consistency) -> str:
+    """Format a statistic of the band's consistency with its expected range and p value."""
     meaning, scale, unit = _STATISTICS[each.name]
     return (
         f"{meaning} {scale * each.value:.3g}{unit}, expected {scale * each.low:.3g} to "

@@ -50,5 +50,6 @@ def code_lines(t: float) -> str:
 
 
 def _line(upper: NDArray[np.bool_], lower: NDArray[np.bool_]) -> str:
+    """Join two rows of cells, True where white, into one line of half-block characters."""
     blocks = {(True, True): " ", (False, False): "█", (False, True): "▀", (True, False): "▄"}
     return "".join(blocks[bool(a), bool(b)] for a, b in zip(upper, lower, strict=True))

@@ -165,12 +165,13 @@ def squares_of(board: Board) -> tuple[int, int]:
 
 
 def board_rectangles(board: Board, *, left: float, bottom: float) -> tuple[Rectangle, ...]:
-    """Compute a board's rectangles: black where row plus column is even; ChArUco: else a marker.
+    """Compute a board's black rectangles: squares, and the cells of a ChArUco board's markers.
 
-    Rows are counted from the top, from 0; markers are numbered from 0 along the rows.
+    A square is black where row plus column is even, both counted from 0, rows from the top. The
+    other squares of a ChArUco board hold a marker each, numbered from 0 along the rows.
 
     Args:
-        board: The board; of ChArUco boards OpenCV's pattern since 4.6.
+        board: The board; a ChArUco board gets the pattern that OpenCV expects since version 4.6.
         left: Left edge of the board [mm].
         bottom: Lower edge of the board [mm].
     """
@@ -198,6 +199,15 @@ def board_rectangles(board: Board, *, left: float, bottom: float) -> tuple[Recta
 def _marker_page(
     size: tuple[float, float], number: int, side: float, title: str, direction: str
 ) -> KitPage:
+    """Lay out a page with one marker in the middle: title, direction and cutting advice around it.
+
+    Args:
+        size: Width and height of the paper [mm].
+        number: Number of the marker in `DICTIONARY`.
+        side: Side of the marker's black square [mm].
+        title: First line of the page.
+        direction: Text that tells how to orient the marker.
+    """
     width, height = size
     left, bottom = (width - side) / 2, (height - side) / 2 + 15
     cells = marker_rectangles(DICTIONARY, number, side, left=left, bottom=bottom)
@@ -211,6 +221,7 @@ def _marker_page(
 
 
 def _board_page(size: tuple[float, float], board: Board) -> KitPage:
+    """Lay out the page of the calibration board; raise if it does not fit on the paper."""
     width, height = size
     columns, rows = squares_of(board)
     across, up = 1e3 * board.square * columns, 1e3 * board.square * rows
@@ -229,6 +240,7 @@ def _board_page(size: tuple[float, float], board: Board) -> KitPage:
 
 
 def _in_words(board: Board) -> str:
+    """Describe a board for its page in the form that --board accepts."""
     square = f"{1e3 * board.square:g}mm"
     if isinstance(board, CharucoBoard):
         marker = f"{1e3 * board.marker:g}mm"
@@ -241,6 +253,7 @@ def _in_words(board: Board) -> str:
 
 
 def _bar(width: float) -> tuple[Rectangle, ...]:
+    """Return the 100 mm bar with an end mark at either end, centred at the foot of a page."""
     left = (width - _BAR) / 2
     ends = tuple(Rectangle(x, 10, 0.3, 4) for x in (left - 0.15, left + _BAR - 0.15))
     return (Rectangle(left, 11.85, _BAR, 0.3), *ends)
@@ -251,6 +264,13 @@ def _bar_text(width: float) -> Text:
 
 
 def _ruler(width: float, bottom: float, length: float) -> tuple[list[Rectangle], list[Text]]:
+    """Lay out a centred ruler in millimetres; the ticks of 5 mm and 10 mm are taller.
+
+    Args:
+        width: Width of the paper [mm].
+        bottom: Height of the ruler's base line on the page [mm].
+        length: Length of the ruler [mm].
+    """
     left = (width - length) / 2
     ticks = [Rectangle(left - 0.1, bottom, length + 0.2, 0.2)]
     numbers = []

@@ -35,7 +35,7 @@ from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
 from zebro_lab.track.photo_sequence import upright_size
 
 KIT_FILE = "kit.pdf"
-FEWEST_VIEWS = 3
+FEWEST_VIEWS = 3  # with fewer photographs of the board, another size of board is looked for
 _TRIED = 6  # photographs in which another board is looked for
 LENS = SingleFile("camera calibrate", {HEADING.encode(): b""})
 
@@ -150,6 +150,11 @@ def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult
 
 
 def _look(job: tuple[Path, Board, tuple[int, int]]) -> SeenBoard | str:
+    """Find the board in a photograph of the given size (width, height) [px].
+
+    Returns:
+        The detected board, or the reason why the photograph is left out.
+    """
     path, board, size = job
     try:
         view = find_board(read_pixels(path, size=size), board, name=path.name)
@@ -159,6 +164,7 @@ def _look(job: tuple[Path, Board, tuple[int, int]]) -> SeenBoard | str:
 
 
 def _why_none(request: CameraRequest, left_out: dict[str, str]) -> str:
+    """Return the error message for a board that no photograph shows, with a first reason."""
     name, reason = next(iter(left_out.items()))
     return (
         f"the board '{request.board}' is seen in none of {len(left_out)} photographs ({name}: "
@@ -167,7 +173,13 @@ def _why_none(request: CameraRequest, left_out: dict[str, str]) -> str:
 
 
 def _other_count(board: Board, paths: Sequence[Path], found: int) -> str | None:
-    """Return an error message if photographs show a checkerboard of one corner more or fewer.
+    """Return an error message if the photographs show a checkerboard of slightly another size.
+
+    Columns, rows or both may differ by one. There is a message only if such a board is seen in more
+    of the first `_TRIED` photographs than `board` was in all of them; else None is returned.
+
+    Its columns, its rows or both differ by one. There is a message only if it is seen in more of
+    the first `_TRIED` photographs than `board` was in all of them; else None is returned.
 
     Args:
         board: The board that was looked for.
@@ -232,6 +244,7 @@ def write_kit(out: Path, *, paper: str = "a4", board: str = "kit") -> tuple[Path
 
 
 def _require_same(file: Path, content: bytes) -> None:
+    """Raise if the file exists with other content than that to be written."""
     if os.path.lexists(file) and (not file.is_file() or file.read_bytes() != content):
         raise AlreadyExists(f"{file} exists with other content; choose another folder with --out")
 

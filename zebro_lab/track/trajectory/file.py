@@ -68,7 +68,10 @@ class Trajectory:
 
     @property
     def leaves_plane(self) -> bool:
-        """Whether the path extends farther across the plane than in it, in one direction."""
+        """Whether the path extends farther along the normal than along one axis of the plane.
+
+        An extent along the normal of up to a tenth of the path's longer one does not count.
+        """
         extent = np.ptp(self.poses.position, axis=0)
         across = float(np.ptp(self.height))
         return across > extent.min() and across > 0.1 * extent.max()
@@ -98,7 +101,7 @@ def read_trajectory(
             canonical names are recognised by their headers.
         which: 0 for the first file of a command, 1 for the second.
         topic: Topic to read from a ROS log; None for one of `topics`, else the only one with poses.
-        topics: Topics of a ROS log to prefer, also such of other messages.
+        topics: Topics of a ROS log to prefer; those without poses are ignored.
 
     Raises:
         NotFound: A file is missing, or the package that reads a ROS log.

@@ -76,6 +76,7 @@ def read_pose_table(
     columns = {name: table.column(named[name]) for name in COLUMNS[found]}
     units = {name: table.units[named[name]] for name in columns if named[name] in table.units}
     table = replace(table, columns=columns, units=units, notes=())
+    # EuRoC files hold integer nanoseconds; other programs write the same columns in seconds.
     if found is Layout.EUROC and _is_whole(table.numbers("t_s")):
         table = replace(table, units={"t_s": "ns", **units})
     return found, _of_matrices(table) if found is Layout.KITTI else table
@@ -91,7 +92,13 @@ def _is_whole(values: Array) -> bool:
 
 
 def _layout_of_count(table: RawTable, plane: str) -> Layout | None:
-    """Return the only layout with as many numbers; None where the place of w is open."""
+    """Infer the layout from the count of numbers: 12 are KITTI, 8 between blanks TUM; else None.
+
+    Raises:
+        DataError: There are 8, but the body is upright only if w is the first number of the
+            quaternion,
+            not the last as in TUM files.
+    """
     if len(table.columns) == len(COLUMNS[Layout.KITTI]):
         return Layout.KITTI
     between_blanks = table.separator in ("\t", BLANKS)

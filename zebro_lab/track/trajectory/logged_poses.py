@@ -40,7 +40,7 @@ def read_logged_poses(
         plane: Axes of the floor, in which a covariance is read.
         topic: Topic to read, that of a transform with its child frame, such as `/tf:base_link`;
             None for one of `topics`, else the only one with poses.
-        topics: Topics to prefer, also such of other messages.
+        topics: Topics to prefer; those without poses are ignored.
 
     Returns:
         The topic; and columns t_s, x_m, y_m, z_m and, unless all are zeros, which a publisher that
@@ -63,6 +63,10 @@ def read_logged_poses(
 
 
 def _parts(message: LoggedMessage) -> Parts:
+    """Yield topic, header and content of each pose of a message; none of static transforms.
+
+    A transform's topic is completed by its child frame, as in `/tf:base_link`.
+    """
     if message.type != TRANSFORMS:
         yield message.topic, message.content.header, message.content
     elif not message.topic.endswith(_STATIC):
@@ -81,7 +85,7 @@ def _pose(kind: str, content: Any) -> tuple[float, ...]:
 
 
 def _planar_covariance(found: TopicRows, plane: str) -> dict[str, Array]:
-    """Return `cov_xx` to `cov_yawyaw` of the messages in a plane; empty where it is not known."""
+    """Return `cov_xx` to `cov_yawyaw` in a plane; empty if messages have none, or only zeros."""
     if _POSES[found.type] != "pose.pose":
         return {}
     covariance = np.array([each.pose.covariance for each in found.contents], dtype=float)

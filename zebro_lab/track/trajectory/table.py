@@ -32,7 +32,7 @@ FASTEST: Final = 20.0
 """Largest mean speed of a path whose unit of length nobody states [m/s]."""
 _LEGS_OF_PATH: Final = 21  # so few that noise does not lengthen the path
 _ALIGNED: Final = 0.9  # alignment of heading and travel above which a unit fits the path
-_CLEARLY, _LEAST_LACK = 5.0, 0.05  # alignment that radians lack more than degrees: factor, least
+_CLEARLY, _LEAST_LACK = 5.0, 0.05  # by which radians must align worse than degrees: factor, offset
 _UNITS: Final = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _SINCE_1970: Final = (6.3e8, 4.2e9)
 """Seconds since 1970 of the years 1990 to 2102: no other unit has such numbers for these years."""
@@ -160,9 +160,13 @@ def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) ->
 
 
 def _require_units(table: RawTable, mapping: Columns, columns: Mapping[str, Array]) -> None:
-    """Raise `DataError` if headings or positions whose unit nobody states cannot be in SI."""
+    """Raise `DataError` if headings or positions whose unit nobody states cannot be in SI.
+
+    Headings are degrees if `are_degrees`; positions are not metres if their mean speed is above
+    `FASTEST`.
+    """
     position = np.column_stack([columns["x_m"], columns["y_m"]])
-    heading, east = mapping.mapped["yaw_rad"], mapping.mapped["x_m"]
+    heading, x = mapping.mapped["yaw_rad"], mapping.mapped["x_m"]
     unstated = not heading.unit_stated and heading.name not in table.units
     if "yaw_rad" in columns and unstated and are_degrees(columns["yaw_rad"], position):
         largest = float(np.abs(columns["yaw_rad"]).max())
@@ -171,7 +175,7 @@ def _require_units(table: RawTable, mapping: Columns, columns: Mapping[str, Arra
     at = np.linspace(0, len(position) - 1, _LEGS_OF_PATH).astype(int)
     way = float(np.linalg.norm(np.diff(position[at], axis=0), axis=1).sum())
     speed = way / float(np.ptp(columns["t_s"]) or np.inf)
-    if speed > FASTEST and east.name != "x_m" and not mapping.states_unit(table, "x_m"):
+    if speed > FASTEST and x.name != "x_m" and not mapping.states_unit(table, "x_m"):
         found = (
             f"the path goes at {speed:.3g} m/s, if positions are in m; expected at most "
             f"{FASTEST:g} m/s where their unit is not stated"
@@ -185,7 +189,7 @@ def _first_of_stamps(
     """Return the first row of each stamp, and a note on those that are left out.
 
     Raises:
-        DataError: More than one in a hundred rows repeat a stamp with another pose.
+        DataError: Over one in a hundred rows, and at least two, repeat a stamp with another pose.
     """
     t = columns["t_s"]
     poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])
@@ -215,7 +219,10 @@ def recognised(table: RawTable, mapping: Columns) -> Columns:
 
 
 def are_degrees(heading: Array, position: Array) -> bool:
-    """Return whether headings above 2 pi fit the direction of travel in degrees alone.
+    """Return whether headings fit the direction of travel in degrees, and not in radians.
+
+    They must exceed 2 pi, be aligned by more than `_ALIGNED` in degrees, and lack in radians over
+    `_CLEARLY` times as much of an alignment of 1, plus `_LEAST_LACK`. False for too short a path.
 
     The alignment is the length of the mean of unit vectors at heading minus direction of travel:
     1 where they differ by a constant, about 0 where they have nothing to do with one another.

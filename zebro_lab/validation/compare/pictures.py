@@ -16,9 +16,10 @@ _DOTS = (6.0, 3.5)  # points: a dot under another is seen as a ring
 
 @sheet.styled
 def overlay(compared: Comparison, *, simulated: bool) -> Figure:
-    """Draw both slip curves overlaid, a panel for each load, or both tracks.
+    """Draw both slip curves overlaid, a panel for each load, or both tracks in one panel.
 
-    Below each panel is another of small slips if a peak lies there.
+    If any curve peaks at a slip of less than `sheet.NARROW` of the largest, a second row of panels
+    enlarges these small slips at every load.
 
     Args:
         compared: The comparison.
@@ -54,6 +55,7 @@ def overlay(compared: Comparison, *, simulated: bool) -> Figure:
 
 
 def _has_narrow_peak(curve: Curve) -> bool:
+    """Return whether either mean curve peaks at less than `sheet.NARROW` of the largest slip."""
     at = np.abs(curve.slip[np.nanargmax(np.abs(curve.bands[:, 1]), axis=1)])
     return bool(np.any(at < sheet.NARROW * np.abs(curve.slip).max()))
 

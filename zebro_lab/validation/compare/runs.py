@@ -51,6 +51,7 @@ def compare_runs(
 
 
 def _read(run: Path) -> TrackFile:
+    """Read the track of a run folder; raise if it has no headings."""
     track = read_track(run / TRACK)
     if not track.poses.has_yaw:
         raise DataError("has no headings: track it again with a marker or both prints", file=run)
@@ -72,5 +73,6 @@ def _summaries(track: TrackFile, rng: np.random.Generator) -> Array:
 
 
 def _from_origin(poses: Poses) -> Poses:
+    """Move poses so that the first lies at the origin and heads along x."""
     turned = poses.moved(rotation=-float(poses.yaw[0]), translation=[0.0, 0.0])
     return turned.moved(rotation=0.0, translation=-turned.position[0])

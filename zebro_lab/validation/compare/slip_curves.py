@@ -27,7 +27,7 @@ _SAME = 0.02  # relative difference of a load from the tested range that is take
 
 
 class _Fitted:
-    """The curve of a calibration, with draws of its parameters."""
+    """The slip curve of a calibration, with `DRAWS` posterior draws of its parameters."""
 
     def __init__(self, path: Path, rng: np.random.Generator) -> None:
         self.slip = parse_slip(str(path), with_walks=False)
@@ -49,7 +49,7 @@ class _Fitted:
         return np.broadcast_to(slope, self.columns.shape[1])
 
     def points(self, load: float) -> Array:
-        """Read slip ratios and forces of the block means near a load, shape (2, k)."""
+        """Read slip ratios and forces of block means within `_NEAR` of a load, shape (2, k)."""
         slip, loads, force = read_block_means(self.files[0])
         near = np.abs(loads - load) <= _NEAR * load
         return np.stack([slip[near], force[near]])
@@ -142,9 +142,13 @@ def compare_slip(
 
 
 def _loads(fitted: list[_Fitted], given: GivenCurve | None) -> list[float]:
-    """Return loads [N] in the range that was tested: those of the curve, else those tested.
+    """Return the loads at which the curves are compared [N], within the tested loads of all.
 
-    Without either they are lowest, middle and highest load of the range.
+    They are the loads of the given curve, else those of the first calibration's test. If none of
+    the latter is in the common range, they are its lowest, middle and highest load.
+
+    Raises:
+        DataError: The ranges do not overlap, or no load of the given curve lies in them.
     """
     low = max(each.curve.load_range[0] for each in fitted)
     high = min(each.curve.load_range[1] for each in fitted)
@@ -166,7 +170,10 @@ def _loads(fitted: list[_Fitted], given: GivenCurve | None) -> list[float]:
 
 
 def _slips(fitted: list[_Fitted]) -> Array:
-    """Return slip ratios tested in all, closer to each other near zero and without zero, (n,)."""
+    """Return slip ratios in the tested range of all, closest to each other near zero, shape (n,).
+
+    Zero is left out, as is a side, positive or negative, that reaches up to `_SIDE` of the other.
+    """
     ranges = [each.curve.slip_range for each in fitted]
     ends = (min(0.0, max(low for low, _ in ranges)), max(0.0, min(high for _, high in ranges)))
     spaced = np.linspace(_FIRST, 1.0, _SLIPS) ** 2  # peaks are narrow and near zero
@@ -175,7 +182,14 @@ def _slips(fitted: list[_Fitted]) -> Array:
 
 
 def _band(forces: Array) -> Array:
-    """Return lower edge, mean and upper edge of the band of draws, shape (3, loads, slips)."""
+    """Compute lower edge, mean and upper edge of the simultaneous band of draws.
+
+    Args:
+        forces: Forces, shape (draws, loads, slips) [N]; of one draw all three are the draw itself.
+
+    Returns:
+        Forces, shape (3, loads, slips) [N].
+    """
     if len(forces) == 1:
         return np.repeat(forces, 3, axis=0)
     band = simultaneous_band(forces)
@@ -185,7 +199,11 @@ def _band(forces: Array) -> Array:
 def _quantities(
     load: float, slip: Array, forces: Sequence[Array], slopes: Sequence[Array]
 ) -> Iterator[Quantity]:
-    """Yield the features that both curves have at a load, of the side that was tested farther.
+    """Yield peak slip, peak force and slope at zero slip of both curves at a load, if known.
+
+    Peaks are those of the side of zero slip that was tested farther. A feature is left out if a
+    draw of it is not finite, the peak slip also if all draws of a curve peak at the smallest slip,
+    as does a curve that jumps at zero slip.
 
     Args:
         load: Load [N].
@@ -206,7 +224,15 @@ def _quantities(
 
 
 def _place(forces: Array, curve: Array, loads: list[float], slip: Array, text: str) -> Place:
-    """Find where a curve lies in the band of a calibration's draws."""
+    """Find where a given curve lies in the simultaneous band of a calibration's draws.
+
+    Args:
+        forces: Forces of the draws, shape (draws, loads, slips) [N].
+        curve: Forces of the given curve, shape (loads, slips) [N]; NaN where it is unknown.
+        loads: Loads [N].
+        slip: Slip ratios, shape (slips,) [-].
+        text: Name of the given curve, for the error if it is unknown at all slip ratios.
+    """
     if not np.isfinite(curve).any():
         raise DataError(
             f"{text} has no point at a tested slip ratio, {slip.min():.3g} to {slip.max():.3g}"

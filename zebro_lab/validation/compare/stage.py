@@ -98,6 +98,7 @@ def compare(
 
 
 def _kind(path: Path) -> str:
+    """Return "curve", "calibration" (it has a `slip.toml`) or "run" (it has a track)."""
     if is_curve(path):
         return "curve"
     recover(path)

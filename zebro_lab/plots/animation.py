@@ -86,6 +86,7 @@ def frame_times(t: Array) -> tuple[Array, float]:
 
 
 def _writer() -> tuple[AbstractMovieWriter, str]:
+    """Return a writer and the file's name: mp4 if ffmpeg is installed, else gif."""
     if FFMpegWriter.isAvailable():
         return FFMpegWriter(fps=FRAME_RATE, codec="h264", bitrate=-1,
                             extra_args=["-pix_fmt", "yuv420p"]), "animation.mp4"  # fmt: skip

@@ -33,8 +33,8 @@ def slip_laws(
 
     On the left are block means and each law's median curve; on the right the curves less that of
     the reference law, and means of the residuals with their standard errors, in bins of equally
-    many blocks. Slip is
-    drawn on a square-root scale, on which both the rise and the fall of the curves are seen.
+    many blocks. Slip is drawn on a square-root scale, on which both the rise and the fall of the
+    curves are seen.
 
     Args:
         blocks: Block means of slip ratio and forces.

@@ -51,6 +51,10 @@ def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, simulate
 
 
 def _draw_distribution(axes: Axes, whitened: Array) -> None:
+    """Draw a histogram of whitened residuals and the standard normal density.
+
+    Residuals beyond ±`_FAR` are drawn in the outermost bins, and counted in the legend.
+    """
     reach = float(np.clip(np.abs(whitened).max(), 4.0, _FAR))
     beyond = int(np.sum(np.abs(whitened) > _FAR))
     axes.hist(

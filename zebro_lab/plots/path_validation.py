@@ -79,7 +79,8 @@ def path_validation(
 
     Returns:
         The figure; errors are those of the paths against the track, ahead and to the left of the
-        track's direction of travel, in metres if one is over a metre, else in millimetres [deg].
+        track's direction of travel, in metres if one is over a metre, else in millimetres; errors
+        of yaw in degrees.
 
     Raises:
         DomainError: A tracked time lies outside the times of a path.

@@ -90,6 +90,7 @@ def photos_beside_poses(
 
 
 def _draw_robot(axes: Axes, shot: Shot, robot: Robot) -> None:
+    """Draw the predicted body and legs from above, and the tracked outline of the body."""
     body = to_world(outline(robot), shot.position, shot.orientation)
     legs = to_world(leg_arcs(robot, shot.theta), shot.position, shot.orientation)
     for leg, stands in zip(legs, shot.contact, strict=True):

@@ -90,6 +90,10 @@ def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
 
 
 def _edges(values: Array) -> Array:
+    """Return the edges of 40 bins over the finite values and a tenth of their range on either side.
+
+    The margin of a constant is a twentieth of its size, of a constant 0 it is 1.
+    """
     finite = values[np.isfinite(values)]
     margin = 0.1 * float(np.ptp(finite)) or 0.05 * float(abs(finite.flat[0])) or 1.0
     return np.linspace(finite.min() - margin, finite.max() + margin, 41)
@@ -100,6 +104,7 @@ def _middles(edges: Array) -> Array:
 
 
 def _density(values: Array, edges: Array) -> Array:
+    """Estimate a kernel density from a histogram that is smoothed by Scott's width, one a bin."""
     heights, _ = np.histogram(values, edges, density=True)
     return _smoothed(heights, _bandwidth(values, edges, power=1 / 5))
 
@@ -115,6 +120,10 @@ def _bandwidth(values: Array, edges: Array, *, power: float) -> float:
 
 
 def _draw_marginal(axes: Axes, values: Array, edges: Array) -> None:
+    """Draw a parameter's density, median and central 90 %, titled with these numbers.
+
+    They are rounded to two digits of the width of the 90 %.
+    """
     axes.fill_between(_middles(edges), _density(values, edges), color=BLUE, alpha=0.45, lw=0)
     low, median, high = np.quantile(values, (0.05, 0.5, 0.95))
     axes.axvline(median, color=BLUE, lw=1.2, label="median")
@@ -128,6 +137,15 @@ def _draw_marginal(axes: Axes, values: Array, edges: Array) -> None:
 
 
 def _draw_pair(axes: Axes, values: Array, edges: tuple[Array, Array]) -> None:
+    """Draw the highest-density regions of two parameters that hold 50 % and 90 %, and some draws.
+
+    The density is a smoothed histogram. No region is drawn if all draws lie in one point.
+
+    Args:
+        axes: Axes to draw on.
+        values: Draws of the two parameters, shape (n, 2).
+        edges: Edges of the bins of either parameter.
+    """
     counts, _, _ = np.histogram2d(*values.T, bins=edges)
     widths = [
         _bandwidth(each, bins, power=1 / 6) for each, bins in zip(values.T, edges, strict=True)
@@ -147,6 +165,7 @@ def _draw_pair(axes: Axes, values: Array, edges: tuple[Array, Array]) -> None:
 
 
 def _label_corner(axes: Axes, labels: Sequence[str], row: int, column: int) -> None:
+    """Set ticks and labels of a panel: labels only at the left and lower edge of the figure."""
     axes.xaxis.set_major_locator(MaxNLocator(3))
     axes.tick_params(labelsize=8)
     axes.tick_params(axis="x", labelrotation=35)

@@ -311,4 +311,5 @@ def slip_grid(slip: Array, count: int) -> Array:
 
 
 def _mathtext(symbol: str) -> str:
+    """Format a symbol as mathtext: `mu` as the Greek letter, an n after a capital as subscript."""
     return re.sub(r"\b([A-Z])n\b", r"\1_n", re.sub(r"(?<![a-z])mu\b", r"{\\mu}", symbol))

@@ -31,14 +31,16 @@ def slip_curves(
 
     Each block is drawn at the nearest load level; the loads of the blocks are written above. The
     bands are those of the curve (parameters only), without noise and run offsets, over the slip
-    tested at this load, or at all loads for a level without blocks. If a peak is in the first 15 %
-    of the tested slip, each load has a second panel for that part.
+    tested at this load, or at all loads for a level without blocks. They hold 50 % and 90 % of the
+    curves at each slip. If the driving peak of any load (the braking peak where only that is in the
+    tested slip) is in the first 15 % of the tested slip, each load has a second panel for that
+    part.
 
     Args:
         blocks: Block means of slip ratio and forces.
         law: Slip law of the draws.
         draws: Posterior draws of the law's parameters, shape (n_draws, k).
-        load_levels: Nominal loads, shape (n_levels,) [N].
+        load_levels: Nominal loads, one for each row of panels, shape (n_levels,) [N].
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -79,6 +81,7 @@ class _LoadCurve:
 
 
 def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
+    """Compute the quantiles of the curve and its peaks at each load level, from thinned draws."""
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
     values = draws[:: max(1, len(draws) // _CURVES)].T[:, :, None]
     curves = []
@@ -136,6 +139,7 @@ def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:
 
 
 def _peak_text(curve: _LoadCurve) -> str:
+    """Format the first of the peaks: of driving, or of braking where only that was tested."""
     if not len(curve.peaks):
         return "no peak in the tested slip"
     slip, force = curve.peaks[0]

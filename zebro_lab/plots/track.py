@@ -115,6 +115,7 @@ def over_photo(
 
 
 def _outline(axes: Axes, group: SeenMarks) -> None:
+    """Draw closed outlines, with a dot at the first corner and the label to the right."""
     for outline, label in zip(group.outlines_px, group.labels, strict=True):
         closed = np.vstack((outline, outline[:1]))
         axes.plot(
@@ -136,7 +137,7 @@ def _path(axes: Axes, path: Array, ahead: Array) -> None:
 
 
 def _arrows(axes: Axes, start: Array, step: Array) -> None:
-    """Draw headings over the path, white-edged since they lie along it, and not too many."""
+    """Draw at most `_MOST_ARROWS` headings over the path, white-edged since they lie along it."""
     known = np.flatnonzero(np.isfinite(start[:, 0]))
     chosen = known[:: -(-len(known) // _MOST_ARROWS) or 1]
     axes.quiver(
@@ -236,6 +237,7 @@ def residual_page(
 
 
 def _by_source(axes: Axes, t: Array, values: Array, source: Sequence[str]) -> None:
+    """Draw values over time as dots of a shape and colour for each source of poses."""
     shapes = {"marker": ("o", sheet.BLUE), "body": ("s", _GREEN), "hand": ("D", sheet.RED)}
     for name in dict.fromkeys(source):
         chosen = np.array([each == name for each in source])

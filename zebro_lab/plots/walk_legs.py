@@ -41,6 +41,8 @@ def mark_beyond(
 ) -> None:
     """Draw a triangle at the edge of the axes for each excursion of a curve beyond its limits.
 
+    Excursions closer to each other than a hundredth of the time shown share a triangle.
+
     Args:
         axes: Axes with the curve.
         t: Times, shape (n,) [s].
@@ -139,6 +141,9 @@ def leg_angles(path: WalkPath, *, title: str) -> Figure:
 def _turning(t: Array, theta: Array) -> NDArray[np.bool_]:
     """Return whether each leg turns both before and after each sample, shape (n, 6).
 
+    It turns if its mean speed over `_HALF` before, and after, is `_AT_REST` or more. Beyond the
+    ends of the walk nothing is required.
+
     Args:
         t: Times, shape (n,) [s].
         theta: Leg angles, shape (n, 6) [rad].
@@ -230,7 +235,7 @@ def turn_panels(
     """
     shown = (np.degrees(angle) - least) % 360 + least
     turned = np.abs(np.diff(shown, axis=0, prepend=shown[:1])) > 180
-    lines = {name: np.where(turned, np.nan, shown)}
+    lines = {name: np.where(turned, np.nan, shown)}  # no line across the jump from 360 to 0
     limits = float(least), float(least + 360)
     figure = leg_panels(
         path.t, path.contact, lines, limits, label=label, unit="deg", title=title
@@ -241,6 +246,7 @@ def turn_panels(
 
 
 def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
+    """Shade the times of contact over the full height of the axes, and draw a line at zero."""
     spans = [(start, end - start) for start, end in stances(t, contact)]
     axes.broken_barh(
         spans, (0, 1), transform=axes.get_xaxis_transform(), facecolors=_STANCE, lw=0, zorder=0,

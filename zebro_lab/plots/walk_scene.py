@@ -131,6 +131,7 @@ class WalkScene:
             collection.set_color([str(colours[leg]) for leg in legs])
 
     def _show_ground(self, position: Array) -> None:
+        """Draw the grid around the body, at `position` [m], and centre the view on it."""
         low, high = position[:2] - _VIEW / 2, position[:2] + _VIEW / 2
         self._grid.set_segments(ground_lines(self._ground, low, high))
         base = float(heights_along(self._ground, position[None, :2])[0, 2])

@@ -121,7 +121,10 @@ def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
 
 
 def _velocity(path: Poses, t: Array) -> Array:
-    """Compute rates of x, y [m/s] and yaw [rad/s] at times t by differences, shape (n, 3)."""
+    """Compute rates of x, y [m/s] and yaw [rad/s] at times t by central differences, shape (n, 3).
+
+    At an end of the path the difference is to one side; beyond it the rates are 0.
+    """
     before, after = (np.clip(t + step, path.t[0], path.t[-1]) for step in (-_STEP, _STEP))
     span = np.maximum(after - before, _STEP)
     columns = (*path.position.T, path.yaw)

@@ -122,6 +122,7 @@ def _errors(
     distances: tuple[float, ...],
     correct_scale: bool,
 ) -> Errors:
+    """Compute the errors in one space, and the estimate multiplied by the scale used for them."""
     errors = rigid_errors(estimate, reference, distances=distances, correct_scale=correct_scale)
     return Errors(where, errors, estimate.scaled(errors.scale), reference)
 

@@ -107,7 +107,11 @@ def _leg_state(
 
 
 def offset_sd_deg(request: BandRequest, legs: LegReference | InexactLog) -> float:
-    """Return the leg offsets' sd [deg]: as requested, else 0.3 or more, encoder step / sqrt(12)."""
+    """Return the standard deviation of the legs' offsets [deg].
+
+    As requested; else that of rounding to encoder counts, step / sqrt(12), at least
+    `ASSUMED_OFFSET_DEG`, which also holds for angles that are not counted.
+    """
     if request.offset_sd_deg is not None:
         return request.offset_sd_deg
     if isinstance(legs, InexactLog):

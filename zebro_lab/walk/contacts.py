@@ -100,10 +100,18 @@ def _scheduled(
 
 
 def _turn_time(t: Array, theta: Array) -> float | None:
-    """Return how long the legs take for a turn [s]; None unless all turns take equally long."""
+    """Return the duration of a turn of the legs [s], the median; None unless all are about equal.
+
+    All turns of all legs must differ by at most `_STEADY` of it, and each leg turn once or more.
+
+    Args:
+        t: Times, shape (n,) [s].
+        theta: Leg angles, unwrapped, shape (n, 6) [rad].
+    """
     times = []
     for angle in (theta * np.sign(theta[-1] - theta[0])).T:
         turned = np.maximum.accumulate(angle)
+        # From a little beyond the first angle, at which a leg may rest before it turns.
         levels = np.arange(turned[0] + 0.1, turned[-1], 2 * np.pi)
         times.append(np.diff(t[np.searchsorted(turned, levels)]))
     every = np.concatenate(times)

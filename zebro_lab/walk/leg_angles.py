@@ -25,6 +25,11 @@ _TOO_COARSE = (
 def angles_from(log: LegLog, start: float) -> tuple[SampledReference | InexactLog, tuple[str, ...]]:
     """Shift a leg log to start at time zero; find the step of its angles, or their noise.
 
+    Angles with neither, or too coarse to tell noise from motion, are taken as they are. Noisy ones
+    are reconstructed within their noise, and encoder counts as lines through the changes of count.
+    If counts need over `JAGGED` times as many lines as angles with noise of the same size would,
+    they are taken as noisy.
+
     Args:
         log: The leg log.
         start: Time of the log that becomes zero [s].

@@ -98,6 +98,7 @@ def _legend_above(axes: Axes, *, columns: int = 2) -> None:
 
 
 def _draw_run_scores(axes: Axes, run_score: Array) -> None:
+    """Draw the sorted run scores over the central 90 % of a normal; count those outside."""
     outside = int(np.sum(np.abs(run_score) > _NORMAL_90))
     name = f"central 90 %: {outside} of {len(run_score)} outside"
     axes.axhspan(-_NORMAL_90, _NORMAL_90, color=BLUE, alpha=0.15, lw=0, label=name)

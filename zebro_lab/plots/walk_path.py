@@ -210,6 +210,7 @@ def body_outline(path: WalkPath, robot: Robot, sample: int) -> Array:
 
 
 def _extent(path: WalkPath, bodies: Sequence[Array], robot: Robot) -> tuple[Array, Array]:
+    """Return lowest and highest x, y of path and bodies with a margin, shape (2,) each [m]."""
     points = np.vstack([path.position[:, :2], *bodies])
     margin = _MARGIN * robot.body_size[0]
     return points.min(axis=0) - margin, points.max(axis=0) + margin

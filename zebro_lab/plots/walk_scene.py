@@ -121,6 +121,13 @@ class WalkScene:
         return cast("Line3D", self._axes.plot([], [], [], **style)[0])
 
     def _show_legs(self, arcs: Array, contact: NDArray[np.bool_], yaw: float) -> None:
+        """Draw legs on the camera's side over the body, the others behind it, by contact's colour.
+
+        Args:
+            arcs: Points along each leg in the inertial frame, shape (6, 25, 3) [m].
+            contact: Whether each leg is on the ground, shape (6,).
+            yaw: Yaw of the body [rad].
+        """
         colours = np.where(contact, RED, _IN_AIR)
         towards = np.radians(self._axes.azim) - yaw  # the camera, seen from the body
         sides = np.where(self._robot.hips[:, 1] > 0, 1.0, -1.0)

@@ -92,7 +92,10 @@ def contacts_of(
 def _scheduled(
     reference: LegReference, stances: Intervals | None, start: float
 ) -> list[tuple[Array, Array]] | None:
-    """Return the touchdowns of a program's schedule, but those at its start; None without one."""
+    """Return times [s] and angles [rad] of each leg's touchdowns in a program; None without one.
+
+    A stance at the program's start begins with no touchdown. See `contacts_of` for the arguments.
+    """
     if stances is None:
         return None
     down = [rows[rows[:, 0] > 0, 0] for rows in stances]

@@ -112,6 +112,7 @@ def informed_legs(
 
 
 def _index(walks: StoredWalks, logs: Sequence[Path]) -> int | None:
+    """Return the index of the fitted walk with one of these leg logs, by hash; None if none has."""
     hashes = {file_hash(file) for file in logs if file.is_file()}
     mine = (i for i, log in enumerate(walks.logs) if log in hashes)
     return next(mine, None)

@@ -78,6 +78,7 @@ def write_walk(
 
 
 def _draw(request: PictureRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
+    """Draw figures, contact states, band and animation, as far as requested and computed."""
     _raise_if_stopped(watcher)
     if request.figures or walked.contacts is not None or walked.band is not None:
         from zebro_lab.walk import pictures  # matplotlib takes most of a second

@@ -95,7 +95,10 @@ def read_prediction(path: Path) -> PredictionFile:
 
 
 def _anisotropy(manifest: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return a note on the lateral traction that a band allows for; none of earlier versions."""
+    """Return a note on how traction across the legs may differ from that along them in a band.
+
+    Manifests of earlier versions do not say: their bands took both to be alike.
+    """
     settings = manifest["settings"]
     factor = (settings.get("band") or {}).get("anisotropy", NOT_SAID)
     if factor in (NOT_SAID, 1):

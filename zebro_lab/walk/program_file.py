@@ -96,6 +96,7 @@ def even_times(cycle: float, groups: Gait) -> tuple[float, float]:
 
 
 def _segment(table: SettingsTable, leg_arc: float) -> tuple[Segment, str]:
+    """Read a segment: a stand, or a gait and its end; also return what it does, for a table."""
     if "stand" in table:
         return Segment(stand=_seconds(table, "stand")), "stand"
     text = table.text("gait")
@@ -148,6 +149,7 @@ def _times(table: SettingsTable, groups: Gait) -> tuple[float, float]:
 
 
 def _until(table: SettingsTable) -> Until:
+    """Read when a segment ends: exactly one of `_ENDS`."""
     given = [name for name in _ENDS if name in table]
     if len(given) != 1:
         raise table.fault(

@@ -175,7 +175,10 @@ class ModelRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Given `--slip` (not `thesis`, also `coulomb:…`), `--robot` and `--ground` as paths."""
+        """Values of `--slip`, `--robot` and `--ground`, as paths, of those that are given.
+
+        `--slip thesis` is left out; `coulomb:…`, although no file, is not.
+        """
         slip = () if self.slip in (None, "thesis") else (Path(self.slip),)
         return (*slip, *(file for file in (self.robot, self.ground) if file is not None))
 

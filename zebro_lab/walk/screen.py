@@ -88,6 +88,7 @@ def walk_document(walked: Walked) -> dict[str, object]:
 
 
 def _schedule_document(walked: Walked) -> dict[str, object] | None:
+    """Return cycle, coupling time and events of a max-plus gait for `--json`; None for others."""
     if walked.schedule is None or not isinstance(walked.reference, CyclicReference):
         return None
     down, up = _events(walked.reference)
@@ -125,6 +126,7 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
 
 
 def _notes(walked: Walked, summary: WalkSummary) -> list[str]:
+    """Return all notes on a walk, warnings first: on its tilt, support, slip and work too."""
     support = _support(walked)
     lines = [*walked.notes, *tilt_lines(summary), *support_lines(support)]
     lines += [*slip_lines(walked, summary, support), *work_lines(leg_work(walked.path))]
@@ -137,6 +139,7 @@ def _summary(walked: Walked) -> WalkSummary:
 
 
 def _support(walked: Walked) -> Support:
+    """Compute shares of support; stances are those of a gait, else those of a program, if any."""
     path, reference, stances = walked.path, walked.reference, walked.stances
     if isinstance(reference, CyclicReference):
         stances = reference.stance_intervals((float(path.t[0]), float(path.t[-1])))

@@ -97,6 +97,7 @@ def require_shown_times(
 
 
 def _between(path: WalkPath, begin: float, end: float) -> WalkPath:
+    """Return the samples from begin to end [s], but at least two, up to the end."""
     first = int(np.searchsorted(path.t, begin - 1e-9))
     last = int(np.searchsorted(path.t, end + 1e-9))
     first = max(min(first, last - 2), 0)

@@ -71,6 +71,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
 
 
 def _gait(request: WalkRequest, described: RobotFile) -> WalkedLegs:
+    """Return the leg angles of the requested gait, with warnings on their speed."""
     if request.duration is None:
         raise SettingsError("missing: the duration of the walk [s]", key="--duration")
     gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)

@@ -201,6 +201,7 @@ def segment_summaries(
 
 
 def _summary(path: WalkPath, segment: WalkedSegment, begin: float) -> SegmentSummary:
+    """Summarise one segment, from `begin` [s] to its end, as `segment_summaries` says."""
     t = np.linspace(begin, segment.end, segment.cycles + 1 if segment.cycles else 2)
     columns = (path.t, path.position[:, 0], path.position[:, 1], path.yaw)
     poses = np.column_stack([np.interp(t, path.t, column) for column in columns])

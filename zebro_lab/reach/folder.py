@@ -112,6 +112,7 @@ def _segment(part: Part, stepping: Stepping, request: SteppingRequest) -> dict[s
 
 
 def _times(request: SteppingRequest) -> dict[str, float]:
+    """Return the times that were given, by their keys in a program."""
     times = {"cycle": request.cycle, "ground_time": request.tau_ground,
              "flight_time": request.tau_flight}  # fmt: skip
     given = {name: value for name, value in times.items() if value is not None}

@@ -141,7 +141,7 @@ def compared(turning: Way, curving: Way) -> str:
 
 
 def _less(turning: float, curving: float, unit: str, *, equal: float) -> tuple[str, str] | None:
-    """Return the way with the smaller number, and by how much; None if they are equal."""
+    """Return the way with the smaller number, and by how much; None if they differ by `equal`."""
     less = abs(turning - curving)
     if less <= equal:
         return None

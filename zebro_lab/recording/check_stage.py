@@ -91,6 +91,7 @@ def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_
 
 @contextmanager
 def _robot(address: str) -> Iterator[Any]:
+    """Open the robot; a simulated one, which walks from its start, is stopped where it is."""
     _, port = resolve(address, default=LEGS_PROFILE)
     with legs_at(address, default_gait(), rng=np.random.default_rng(0)) as robot, robot:
         if port == SIMULATED:
@@ -101,7 +102,8 @@ def _robot(address: str) -> Iterator[Any]:
 def latest_counts_as_targets(robot: Any) -> tuple[int, ...]:
     """Return the present count of each leg within one turn; as set-points they stop a gait.
 
-    RigTimeout if the robot sends no sample.
+    Raises:
+        RigTimeout: The robot sends no sample.
     """
     around = robot.profile.counts_per_revolution
     return tuple(int(count) % around for count in latest_counts(robot))
@@ -110,6 +112,7 @@ def latest_counts_as_targets(robot: Any) -> tuple[int, ...]:
 def _lift_off(
     robot: Any, profile: LegProfile, touchdown_deg: float, person: Person, clock: Clock
 ) -> LiftOff:
+    """Find the lift-off angle: turn all legs to each angle tried, and ask for the hip's height."""
     def height(theta: float) -> float:
         robot.set_points(encode_counts(profile, [theta] * len(profile.legs)), MOVING)
         end = clock.now() + MOVING

@@ -58,6 +58,7 @@ def _print_document(recorded: "Recorded", output: Output, code: int) -> None:
 
 
 def _report(recorded: "Recorded") -> str:
+    """Format the samples received, lost, rejected and dropped of each device, clocks and seed."""
     from zebro_lab.recording.drawing import clock_in_words
 
     manifest = recorded.manifest

@@ -24,8 +24,8 @@ class Belonging:
     """Whether the results of a report were made from one another.
 
     Attributes:
-        notices: What was changed or does not belong together, one sentence each; empty if
-            nothing is known to.
+        notices: What was changed or does not belong together, one sentence each; empty if no such
+            result is known.
         calibration_used: Whether a prediction was made with the calibration as it is now, or there
             is no prediction to say so.
     """
@@ -89,7 +89,13 @@ def _walk(run: ReportedRun) -> Iterator[str]:
 
 
 def _not_from(what: str, result: ReportPart, files: Mapping[str, str | None]) -> Iterator[str]:
-    """Say which files, by name with their hash as far as known, a result was not made from."""
+    """Yield a sentence for each file that a result was not made from.
+
+    Args:
+        what: Name of the result.
+        result: The result, whose manifest lists the hashes of what it was made from.
+        files: Hash of each file, by name; one whose hash is not known (None) is skipped.
+    """
     for file, digest in files.items():
         if digest is not None and digest not in _read(result):
             yield f"{what} was not made from {file} as it is now; make it again"
@@ -121,6 +127,7 @@ def _judged(run: ReportedRun, validation: ReportPart) -> Iterator[str]:
 
 
 def _together(sources: Sources) -> Iterator[str]:
+    """Say which predictions and tracks are not those that a validation of several runs judged."""
     together = sources.together
     if together is None or together.missing:
         return
@@ -151,6 +158,7 @@ def _present(run: ReportedRun, name: str) -> bool:
 
 
 def _named_slip(prediction: ReportPart) -> str:
+    """Return the name of the slip law that a prediction was made with, as in its manifest."""
     slip = _mapping(_mapping(prediction.manifest.get("settings")).get("slip"))
     return f"slip '{slip['named']}'" if "named" in slip else "no slip law"
 

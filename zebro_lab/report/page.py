@@ -73,6 +73,7 @@ def number(
     value = look_up(document, keys)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         return ABSENT
+    # A JSON pointer (RFC 6901), in which "~" and "/" within a key are escaped.
     path = "/".join(str(key).replace("~", "~0").replace("/", "~1") for key in keys)
     shown = value if rule is None else rule(value)
     shown = shown if scale == 1 else scale * shown  # a count stays an integer
@@ -245,6 +246,7 @@ def _policy(style: str) -> str:
 
 
 def _number(part: ReportPart, file: str, *keys: str | int, **spelling: Any) -> str:
+    """Format a number of a document of a part, as `number` does."""
     return number(part.documents[file], *keys, file=f"{part.folder}/{file}", **spelling)
 
 
@@ -254,6 +256,7 @@ def _breakable(path: object) -> Markup:
 
 
 def _count(run: ReportedRun, topic: str) -> str:
+    """Format the number of messages that a run recorded on a topic."""
     return number(run.recorded, "streams", topic, file=f"{run.folder}/{MANIFEST_FILE}")
 
 

@@ -191,6 +191,7 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
 
 
 def _run(folder: Path) -> ReportedRun:
+    """Read a run and its parts; of the slip rig none, of a track alone those that are present."""
     recorded = _read(folder / MANIFEST_FILE) if (folder / MANIFEST_FILE).is_file() else {}
     if recorded.get("kind") == "slip-rig":
         return ReportedRun(folder, recorded, {})
@@ -240,6 +241,7 @@ _READERS: Mapping[str, Callable[[Path], Any]] = {
 
 
 def _read(file: Path) -> Mapping[str, Any]:
+    """Read a JSON, TOML or CSV file as a mapping; raise `DataError` if it is missing or damaged."""
     try:
         content = _READERS[file.suffix](file)
     except NotFound as error:

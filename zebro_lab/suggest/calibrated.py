@@ -83,7 +83,7 @@ def _stated_in(
 def _known(
     of: type[Any], settings: Mapping[str, Any], key: str, folder: Path, default: Any = None
 ) -> Any:
-    """Return prior knowledge that a manifest holds, as a dataclass `of` its kind."""
+    """Return prior knowledge that a manifest holds, as an instance of the dataclass `of`."""
     found = settings.get(key, default)
     if found is None:
         raise DataError(f"has no settings.{key}; calibrate again", file=folder / MANIFEST)

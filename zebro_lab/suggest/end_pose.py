@@ -141,6 +141,7 @@ def end_pose_target(
     walked, poses = end_poses(walk, posterior, z[:WALKED], executor=executor)
     own = {parameter.name for parameter in posterior.law.parameters}
     of_law = np.array([parameter.name in own for parameter in posterior.free])
+    # Zero, so that the regression gives no weight to coordinates that no walk depends on: of noise.
     return regressed_target(
         name, np.where(of_law, walked, 0.0), poses, parts=PARTS, units=UNITS, n_draws=n_draws
     )

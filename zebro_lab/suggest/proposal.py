@@ -44,7 +44,7 @@ class Knowledge:
         posterior: The calibration's blocks, law and priors, not straightened.
         draws: Draws of its coordinates around which designs are judged, shape (m, d).
         now: Information of the priors and of the calibration's blocks, shape (m, d, d).
-        before: That which further runs are fitted with: `now`, or of the priors alone.
+        before: Information to which further runs add theirs: `now`, or that of the priors alone.
         conditions: Moments of blocks of further runs.
         rate: Samples a second [Hz].
     """
@@ -103,14 +103,14 @@ def seconds_of(plan: Plan) -> float:
 
 
 def as_planned(plan: Plan, knowledge: Knowledge, targets: Sequence[Target]) -> Design:
-    """Return what a plan of points leaves as it is."""
+    """Compute the uncertainty that a plan leaves if its points stay as they are."""
     slips = np.array(_once(plan.points) * plan.points.repeats)
     roots = _roots(slips, plan.points.loads, (plan.points.duration,), knowledge)[:, 0]
     return planned(knowledge.before, roots, np.ones(len(slips), dtype=np.intp), targets)
 
 
 def _once(points: PointGrid) -> tuple[float, ...]:
-    """Return the slips of one pass in order."""
+    """Return the slips of one pass in order; of "up-down" rising, then falling again."""
     if points.order != "up-down":
         return points.slips
     up = tuple(sorted(points.slips))
@@ -176,6 +176,9 @@ def propose(
 def candidates(slips: Sequence[float]) -> tuple[Array, NDArray[np.intp]]:
     """Return candidate slips of a plan's range, and the indices of those that are always measured.
 
+    Candidates are about `CANDIDATES` slips that are spaced more closely near zero, the plan's own,
+    of which at most about `MOST_SLIPS` are taken, and about `SKELETON` that are always measured.
+
     Args:
         slips: The plan's slips.
     """
@@ -189,7 +192,11 @@ def candidates(slips: Sequence[float]) -> tuple[Array, NDArray[np.intp]]:
 
 
 def durations(plan: Plan, knowledge: Knowledge) -> tuple[float, ...]:
-    """Return the durations to try: a block and the window of settling at least [s]."""
+    """Return the durations of a point that are tried, increasing [s].
+
+    They are `DURATIONS`, in even ratios from the shortest that holds a block and the window of
+    settling to `LONGEST`; and that of the plan, unless it is shorter.
+    """
     shortest_run = max(plan.settle.window, knowledge.conditions.length / knowledge.rate)
     even = np.geomspace(shortest_run, max(LONGEST, shortest_run), DURATIONS)
     rounded = [float(f"{each:.2g}") for each in even]
@@ -252,7 +259,16 @@ def in_passes(slips: Array, counts: NDArray[np.intp]) -> tuple[float, ...]:
 def _roots(
     slips: Array, loads: Sequence[float], tried: Sequence[float], knowledge: Knowledge
 ) -> Array:
-    """Return roots of the information of points, shape (m, durations, slips, loads, d)."""
+    """Compute roots of the information of single points, shape (m, durations, slips, loads, d).
+
+    The sum of their outer products is the information of all points around each of m draws.
+
+    Args:
+        slips: Slip ratios [-].
+        loads: Loads [N].
+        tried: Durations of a point [s].
+        knowledge: Draws, law and conditions of measurement.
+    """
     slip, load = (each.ravel() for each in np.meshgrid(slips, np.array(loads), indexing="ij"))
     conditions = knowledge.conditions
     blocks = planned_blocks(slip, load, conditions, knowledge.posterior.blocks)

@@ -141,6 +141,7 @@ def parse_target(text: str, *, option: str = TARGET) -> TargetText:
 
 
 def _force(text: str, option: str) -> ForceText:
+    """Parse `force@SLIP,…[:LOAD]`: slips that are not 0, at most 1, and a load above 0."""
     slips, colon, load = text.removeprefix(FORCE).removeprefix("@").partition(":")
     try:
         numbers = tuple(float(each) for each in slips.split(","))

@@ -48,7 +48,7 @@ from zebro_lab.suggest.request import ForceText, ParameterText, SuggestRequest, 
 from zebro_lab.workers import WorkersRequest, open_executor
 
 READ_DRAWS: Final = 200
-"""Draws of the posterior that are read, of which the first that can be used are."""
+"""Draws of the posterior that are read; the first of them that are usable are used."""
 MOST_PLAN: Final = 1 << 20
 """Largest plan that is read [bytes]."""
 _ADVICE = "calibrate again"

@@ -44,7 +44,12 @@ class BandRequest:
     scheduler: SchedulerOption = None
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for one or negative draws, their negative sd, or none to share."""
+        """Check the values.
+
+        Raises:
+            SettingsError: The number of draws is 1 or negative, their standard deviation of leg
+                offsets is negative, or a scheduler is given without draws.
+        """
         _ = self.workers  # checks the address
         if self.draws < 2 and self.draws != 0:
             raise SettingsError(

@@ -273,6 +273,7 @@ def time_step(request: ModelRequest, model: WalkModel, informed: InformedLegs | 
 
 
 def _run(run: ModelRun, model: WalkModel, slip: NamedSlip | None) -> WalkPath:
+    """Run the model; raise `SettingsError` for a slip law of a definition that it cannot take."""
     try:
         return model.run(run)
     except DefinitionMismatch as error:

@@ -37,6 +37,7 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
 
 
 def _parameter_table(posterior: WalkPosterior) -> Table:
+    """Return a table of prior, posterior and share informed by the walks, a row per parameter."""
     walks = counted(len(posterior.walks), "walk")
     title = f"legs and floor fitted to {walks}: {', '.join(posterior.walks)}"
     numbers = ("prior", "posterior", "unit", "informed")
@@ -47,6 +48,10 @@ def _parameter_table(posterior: WalkPosterior) -> Table:
 
 
 def _cells(each: Contraction, unit: str) -> tuple[str, str, str, str]:
+    """Format prior, posterior, unit and informed share of a parameter.
+
+    Logarithms are shown as the factor that they are of, `fall` with its usual value `FALL` added.
+    """
     share = f"{informed(each.contraction):.0%}"
     if unit == "log":  # of a factor
         before = f"1 ×/÷ {np.exp(each.prior_sd):.2f}"
@@ -68,6 +73,7 @@ def _uninformed(posterior: WalkPosterior) -> list[str]:
 
 
 def _cases(posterior: WalkPosterior) -> list[str]:
+    """Return a line for each wrongly mounted leg with a probability of `_LIKELY` or more."""
     lines = []
     for found in posterior.found():
         if found.probability < _LIKELY:
@@ -82,6 +88,7 @@ def _cases(posterior: WalkPosterior) -> list[str]:
 
 
 def _quality(posterior: WalkPosterior) -> list[str]:
+    """Format misfits and effective draws, with a warning if these are too few to be reliable."""
     misfits = zip(posterior.walks, posterior.misfit, strict=True)
     lines = [
         "Mean square of whitened residuals (about 1 or less is expected): "
@@ -94,6 +101,7 @@ def _quality(posterior: WalkPosterior) -> list[str]:
 
 
 def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
+    """Return a table of the errors of each left-out walk, beside the best baseline's CRPS."""
     numbers = (
         "error, rms\n[mm]", "of path\n[%]", "yaw\n[deg]", "radius\n[m]", "tracked\n[m]",
         "90 % band holds\nx, y, yaw [%]", "CRPS x, y\n[mm]", "best baseline's\n[mm]",

@@ -65,7 +65,7 @@ def require_walks(request: WalksRequest, calibration: CalibrationRequest, watche
     require_replaceable(calibration.out, CALIBRATION, inputs=request.walks)
     require_replaceable(calibration.out / FOLDER, WALKS, inputs=request.walks)
     watcher.step("reading walks", None)
-    rough = parse_slip(THESIS)
+    rough = parse_slip(THESIS)  # instead of the law that is still to be fitted
     if request.estimate_offset:
         clock = estimated_clock_of(rough)
     else:
@@ -150,6 +150,7 @@ def _fit(
 
 
 def _slip_of(request: WalksRequest, calibration: Path) -> Path:
+    """Return the `slip.toml` of a finished calibration; raise without it, or without walks."""
     if not request.walks:
         raise SettingsError("missing: no walk was given to fit", key="--walks")
     slip_toml = recover(calibration) / SLIP_TOML

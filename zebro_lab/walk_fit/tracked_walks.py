@@ -179,6 +179,7 @@ def _tilt(
 
 
 def _legs_of(folder: Path) -> Path:
+    """Return what leg angles are read from: the run folder itself, else a file `legs.*` in it."""
     if not folder.is_dir():
         raise NotFound(f"{folder}: no such folder; expected a run with leg angles and a track")
     if is_recorded(folder):

@@ -52,7 +52,10 @@ class CheckedRun:
 
     @property
     def verdict(self) -> str:
-        """Whether the run deviates by more than `SUSPICIOUS`, as text; empty if it does not."""
+        """The text "DRIFTED" if the run deviates by more than `SUSPICIOUS`, else empty.
+
+        "NOT TESTABLE" with its reason if the deviation is NaN, for too few samples.
+        """
         if np.isnan(self.deviation):
             return f"NOT TESTABLE: fewer than {BATCHES} samples"
         return "DRIFTED" if abs(self.deviation) > SUSPICIOUS else ""
@@ -98,6 +101,12 @@ def check_runs(data: Sequence[Path], calibration: Path, *, zero_sd: float = 0.1)
 
 
 def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float) -> CheckedRun:
+    """Compare the mean traction of one run with that of the curve at its slips and loads.
+
+    Its variance adds that of the curve's parameters, by the derivative of the mean, that of the
+    zero offset, and that of the run's mean, estimated from means of `BATCHES` consecutive parts
+    (batch means).
+    """
     chosen = samples.run == index
     slip, load = samples.slip[chosen], samples.normal_force[chosen]
     traction = samples.traction_force[chosen]

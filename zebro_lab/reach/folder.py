@@ -99,6 +99,7 @@ def program_text(
 
 
 def _segment(part: Part, stepping: Stepping, request: SteppingRequest) -> dict[str, object]:
+    """Return the keys of a part's `[[segment]]`: gait, times, steering, angles [deg], strides."""
     down, up = stepping.stance(part.share)
     segment: dict[str, object] = {"gait": request.gait, **_times(request)}
     if part.bend != 0:

@@ -113,6 +113,7 @@ def _lift_off(
     robot: Any, profile: LegProfile, touchdown_deg: float, person: Person, clock: Clock
 ) -> LiftOff:
     """Find the lift-off angle: turn all legs to each angle tried, and ask for the hip's height."""
+
     def height(theta: float) -> float:
         robot.set_points(encode_counts(profile, [theta] * len(profile.legs)), MOVING)
         end = clock.now() + MOVING

@@ -214,6 +214,7 @@ def _add_imu(
 
 
 def _add_rig(opened: OpenDevices, stack: ExitStack, address: str, rng: np.random.Generator) -> None:
+    """Add the streams of the slip rig: replayed, simulated or real; check forces for limits."""
     if address.startswith(REPLAY):
         _replay(opened, address, RIG)
         return

@@ -118,6 +118,7 @@ def clock_in_words(name: str, clock: Mapping[str, float]) -> str:
 
 
 def _pace(clock: Mapping[str, float]) -> str:
+    """Format how much slower or faster a device's clock runs than the computer's [ppm]."""
     drift = with_uncertainty(_PPM * abs(clock["drift"]), _SDS * _PPM * clock["drift_sd"])
     return f"{drift} ppm {'slower' if clock['drift'] > 0 else 'faster'}"
 
@@ -151,6 +152,7 @@ class LiveValues:
         }
 
     def _decode(self, folder: Path, name: str, samples: SampleColumns) -> None:
+        """Decode new samples of a stream and store its values in words, each by its label."""
         try:
             if name not in self._decoders:
                 self._decoders[name] = stream_decoder(name, profile_of(folder, name))
@@ -164,6 +166,7 @@ class LiveValues:
 
 
 def _in_words(values: Array, unit: str) -> str:
+    """Format the newest leg angle within a turn, or other angle [deg]; of other values the mean."""
     if unit == "rad":  # of a leg
         return f"{float(np.degrees(values[-1])) % 360:3.0f} deg"
     return f"{float(values[-1] if unit == 'deg' else np.mean(values)):6.1f} {unit}"

@@ -232,6 +232,7 @@ class RunRecorder:
         return thread
 
     def _undo(self) -> None:
+        """End the threads and remove the run folder, after a failure to begin."""
         self._ending.set()
         for thread in self._threads:
             thread.join(JOIN_LIMIT)
@@ -256,6 +257,7 @@ class RunRecorder:
             self._fail(f"{where}: {_one_line(error)}")
 
     def _write_loop(self, files: RunFiles) -> None:
+        """Write and flush what is queued each `FLUSH_EVERY`, and once more at the end."""
         with self._storing_failure(files.folder / LOG_FILE):
             while not self._ending.wait(FLUSH_EVERY):
                 self._drain(files.log)
@@ -273,6 +275,7 @@ class RunRecorder:
             files.require_place()
 
     def _sync_loop(self, files: RunFiles) -> None:
+        """Flush the first files to the disk (fsync), then the log each `SYNC_EVERY`."""
         with self._storing_failure(f"flushing {files.folder} to the disk failed"):
             files.sync_first()
             while not self._ending.wait(SYNC_EVERY):
@@ -308,6 +311,7 @@ class RunRecorder:
             files.close()
 
     def _finish_log(self, files: RunFiles) -> None:
+        """Write last counters, the reason of the end, and the log's index; flush it to the disk."""
         now = self._clock.now()
         for name, counters in self._counters.items():
             files.log.count(now, name, counters, dropped=self.dropped(name))

@@ -96,5 +96,6 @@ def _chosen(what: str, name: str | None, found: tuple[str, ...]) -> tuple[str, .
 
 
 def _source(folder: Path, manifest: RunManifest, stream: str) -> str:
+    """Return the source of a replayed stream: `replay:RUN`, with `sim:` before it if simulated."""
     simulated = is_simulated(manifest.sources.get(stream, manifest.source))
     return f"{'sim:' * simulated}{REPLAY}{folder.absolute().name}"

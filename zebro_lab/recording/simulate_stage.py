@@ -71,6 +71,7 @@ def serve(request: TwinRequest) -> AbstractContextManager[Served]:
 
 @contextmanager
 def _zebro(request: ZebroTwinRequest) -> Iterator[Served]:
+    """Serve a walking robot on a CAN bus, if that is its profile's layout, else on a port."""
     profile = load_leg_profile(request.profile)
     rng = np.random.default_rng(0)
     gait = _gait(request.play)
@@ -89,6 +90,7 @@ def _zebro(request: ZebroTwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def _imu(request: ImuTwinRequest) -> Iterator[Served]:
+    """Serve the IMU of a walking robot on a port."""
     rng = np.random.default_rng(0)
     legs = SimulatedLegs(_gait(request.play), profile=load_leg_profile(LEGS_PROFILE))
     faults = Faults(drop=request.drop)

@@ -202,6 +202,11 @@ def _run(folder: Path) -> ReportedRun:
 
 
 def _part(name: str, folder: Path, data: Path) -> ReportPart:
+    """Read a result folder; without a manifest return it as missing, with the command to make it.
+
+    Raises:
+        DataError: The manifest is of another command, or lists its outputs in another form.
+    """
     recover(folder)
     maker = MAKERS[name].format(run=data, data=data, folder=folder)
     if not (folder / MANIFEST).is_file():

@@ -185,6 +185,10 @@ def _require_parameter(name: str, posterior: SlipPosterior) -> None:
 def _expected(
     targets: Sequence[Target], plan: Plan, knowledge: Knowledge, proposal: Proposal
 ) -> tuple[Expected, ...]:
+    """Return standard deviations of each part of each target: now, by the plan, by the proposal.
+
+    They are rows in the order of the targets and of their parts.
+    """
     now = np.asarray(np.linalg.inv(knowledge.now), dtype=float)
     left = as_planned(plan, knowledge, targets).covariance
     rows = []

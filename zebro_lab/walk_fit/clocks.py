@@ -69,6 +69,7 @@ def estimated_clock_of(slip: Slip) -> Clock:
 
 
 def _predicted_path(legs: Legs, robot: Robot, slip: Slip) -> Poses:
+    """Predict the path of the middle leg angles with a slip law, without a fit of walks."""
     angles = middle(legs)
     draw = WalkDraw(robot, angles, slip.traction_table(weight=robot.mass * GRAVITY))
     return planar_walk(draw, duration=float(legs.t[-1])).poses

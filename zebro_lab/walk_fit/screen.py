@@ -66,6 +66,7 @@ def _cells(each: Contraction, unit: str) -> tuple[str, str, str, str]:
 
 
 def _uninformed(posterior: WalkPosterior) -> list[str]:
+    """Return a line that names the parameters whose posterior equals the prior, if any."""
     names = [each.name for each in posterior.contractions() if not each.informed]
     if not names:
         return []

@@ -44,8 +44,9 @@ def simultaneous_band(forces: Array, *, level: float = 0.9) -> CurveBand:
         \max_{i,j} \frac{|f_{ij} - \bar f_{ij}|}{s_{ij}} \le c
 
     for a share `level` of the draws, with their mean and standard deviation s at each load i and
-    slip ratio j (a sup-t band). A band of quantiles at each slip apart holds a smaller share of
-    whole curves, and so leaves out a true curve somewhere more often than it says.
+    slip ratio j (a sup-t band). A pointwise band of quantiles holds a smaller share of whole
+    curves, and so leaves out a true curve somewhere more often than it says. Points at which all
+    draws agree, s = 0, do not count.
 
     Args:
         forces: Forces of w drawn curves, shape (w, m, n) [N].
@@ -102,6 +103,7 @@ def farthest(band: CurveBand, force: Array) -> Farthest:
     known = np.isfinite(force)
     if not known.any():
         raise InsufficientData("the curve is known at no slip ratio and load that was tested")
+    # A least half width keeps the ratio finite where all draws agree.
     half = np.maximum(band.factor * band.sd, 1e-12 * np.abs(band.mean).max())
     ratio = np.where(known, np.abs(force - band.mean) / half, -np.inf)
     load, slip = np.unravel_index(int(np.argmax(ratio)), ratio.shape)

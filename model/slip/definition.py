@@ -105,7 +105,7 @@ def convert_slip(
 
 
 def slip_per_radius_error(slip: ArrayLike, definition: SlipDefinition | str) -> Array:
-    r"""Compute by how much a slip ratio is too large for each relative error of the ratio of radii.
+    r"""Compute the sensitivity of a slip ratio to a relative error of the ratio of the radii [-].
 
     With :math:`v_g/v_l` taken too small by a factor :math:`1 + \varepsilon`, the true slip is the
     computed one less :math:`\varepsilon` times this, to first order: 1 - slip for material slip,

@@ -90,7 +90,10 @@ def _reduced_arctan(t):
 
 @inlined
 def exp_of(x):
-    """Compute the exponential of a float or `Lanes`; beyond +-`MOST_EXPONENT` that of the limit."""
+    """Compute the exponential of a float or `Lanes`, clipped to +-`MOST_EXPONENT`.
+
+    x is split as k log(2) + r with whole k (Cody-Waite reduction): exp(x) = 2^k exp(r).
+    """
     x = select(x > MOST_EXPONENT, MOST_EXPONENT, x)
     x = select(x < -MOST_EXPONENT, -MOST_EXPONENT, x)
     k = nearest(x * (1.0 / (LN2[0] + LN2[1])))

@@ -38,11 +38,11 @@ class LaneLaw:
         kind: `MAGIC_PEAK`, `MAGIC`, `BRUSH` or `COULOMB`.
         sensitive: Whether friction and stiffness grow with powers of the load.
         reference: Load at which they have their parameters' values [N].
-        sided: Whether driving and braking are apart.
-        coefficients: K, and of the Magic Formula C, mu, x_m/Fn or E, tan(pi/2C) and the exponents
-            of mu and K; of the brush model mu; of Coulomb's friction mu, q and kappa_s.
-            The rest is 0, but the last two: the factors of friction and of slip in driving, 1 over
-            those in braking. Shape (`ROWS`, w).
+        sided: Whether driving and braking differ in friction and stiffness (`SidedLaw`).
+        coefficients: Shape (`ROWS`, w). Row 0 is K. The next rows are, for the Magic Formula, C,
+            mu, x_m/Fn or E, tan(pi/2C) and the exponents of mu and of K; for the brush model mu;
+            for Coulomb's friction mu, q and kappa_s. Unused rows are 0. The last two are the
+            factors on friction and on slip in driving; those in braking are their reciprocals.
     """
 
     kind: int
@@ -84,7 +84,7 @@ def _magic_formula(law: MagicFormula, columns: Array) -> LaneLaw:
 
 
 def _apart(middle: LaneLaw | None, sides: Array) -> LaneLaw | None:
-    """Return a law with driving and braking apart by the parameters of its sides, shape (w, 2)."""
+    """Return the middle curve's law with the two parameters of a `SidedLaw` set, shape (w, 2)."""
     if middle is None:
         return None
     coefficients = middle.coefficients.copy()
@@ -93,7 +93,10 @@ def _apart(middle: LaneLaw | None, sides: Array) -> LaneLaw | None:
 
 
 def _law(kind: int, *rows: Array) -> LaneLaw:
-    """Return a law that does not grow with powers of the load, its missing coefficients 0."""
+    """Return a law from its first coefficients, shape (w,) each; the others are 0.
+
+    It has no load sensitivity, and is the same in driving and braking (both factors are 1).
+    """
     coefficients = np.zeros((ROWS, len(rows[0])))
     coefficients[: len(rows)] = rows
     coefficients[FRICTION_FACTOR:] = 1.0
@@ -149,10 +152,10 @@ def law_at_slip(kind, at_load, slip, load):
 
 @inlined
 def side_at_slip(sided, kind, A, at_load, slip, load):
-    """Compute the traction of a slip law whose driving and braking may be apart [N].
+    """Compute the traction of a slip law whose driving and braking may differ [N].
 
     Args:
-        sided: Whether they are apart; the law is as `law_at_slip` has it if not.
+        sided: Whether they differ; if not, this is `law_at_slip`.
         kind: Kind of the law.
         A: Rows of values, the law's `ROWS` coefficients first.
         at_load: Coefficients of `law_at_load`.
@@ -162,7 +165,7 @@ def side_at_slip(sided, kind, A, at_load, slip, load):
     if not sided:
         return law_at_slip(kind, at_load, slip, load)
     m, h = row(A, FRICTION_FACTOR), row(A, SLIP_FACTOR)
-    braking = slip + 0.0 * m < 0.0
+    braking = slip + 0.0 * m < 0.0  # a float slip becomes `Lanes` where the law has lanes
     m, h = select(braking, 1.0 / m, m), select(braking, 1.0 / h, h)
     return m * law_at_slip(kind, at_load, slip * h, load)
 
@@ -178,7 +181,7 @@ def _brush(sigma, K, mu):
 
 @inlined
 def _coulomb(kappa, K, mu, q, kappa_s):
-    """Compute traction over load of Coulomb friction with a Stribeck drop [-]."""
+    """Compute traction over load with a Stribeck drop; see `coulomb_stribeck` [-]."""
     kappa_c = 1.5 * mu / K
     u = kappa / kappa_c
     u = select(u < 1.0, u, 1.0)

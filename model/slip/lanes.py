@@ -68,7 +68,7 @@ class _MaskModel(models.PrimitiveModel):
 
 
 def _vector(builder, context, kind, value):
-    """Return an LLVM value as a vector: a float is repeated in all lanes."""
+    """Return an LLVM value of numba type `kind` as a vector: a number is repeated in all lanes."""
     if isinstance(kind, LanesType):
         return value
     value = context.cast(builder, value, kind, one)
@@ -79,7 +79,13 @@ def _vector(builder, context, kind, value):
 
 
 def _operator(op: Callable, emit: Callable, result: types.Type) -> None:
-    """Give an operator of two `Lanes`, or of a float and `Lanes`, its type and its instruction."""
+    """Register an operator with numba for two `Lanes`, or a float and `Lanes`.
+
+    Args:
+        op: Python's operator, such as `operator.add`.
+        emit: Function that emits its LLVM instruction from the builder and two vectors.
+        result: numba's type of the result.
+    """
     pairs = [(lanes, lanes), (lanes, one), (one, lanes)]
 
     @infer_global(op)  # pyright: ignore[reportOptionalCall] its stub lacks it
@@ -97,6 +103,7 @@ def _operator(op: Callable, emit: Callable, result: types.Type) -> None:
 
 
 def _compared(sign: str) -> Callable:
+    """Return the function that emits a comparison, "<" or ">", which is false for NaN."""
     return lambda builder, a, b: builder.fcmp_ordered(sign, a, b)
 
 
@@ -119,16 +126,20 @@ def _negate(context, builder, sig, args):
 
 
 def _place(context, builder, array_type, array, index):
-    """Return a pointer to row `index` of an array: to a float, or to a vector of the lanes."""
-    shape = context.make_array(array_type)(context, builder, array)
+    """Return an LLVM pointer to row `index` of an array: to a float, or to a vector of the lanes.
+
+    The array must be C-contiguous and a row of a 2-D one `LANES` long: strides are not looked at.
+    """
+    struct = context.make_array(array_type)(context, builder, array)  # numba's, with `data`
     if array_type.ndim == 1:
-        return builder.gep(shape.data, [index])
+        return builder.gep(struct.data, [index])
     first = builder.mul(index, ir.Constant(_LONG, LANES))
-    pointer = builder.gep(shape.data, [first])
+    pointer = builder.gep(struct.data, [first])
     return builder.bitcast(pointer, ir.VectorType(_DOUBLE, LANES).as_pointer())
 
 
 def _element(array_type):
+    """Return numba's type of an array's row: float64 of a 1-D array, `Lanes` of a 2-D one."""
     return one if array_type.ndim == 1 else lanes
 
 
@@ -139,7 +150,7 @@ def row(typing, array, index):
     def emit(context, builder, sig, args):
         at = context.cast(builder, args[1], sig.args[1], types.intp)
         loaded = builder.load(_place(context, builder, sig.args[0], args[0], at))
-        loaded.align = 8
+        loaded.align = 8  # numpy aligns its arrays to a float64, not to a vector
         return loaded
 
     return _element(array)(array, index), emit
@@ -180,7 +191,7 @@ def select(typing, where, yes, no):
 
 
 def _rounded(name: str, doc: str) -> Callable[..., Any]:
-    """Return a function of a float or `Lanes` that is an LLVM intrinsic of one argument."""
+    """Return a function of a float or `Lanes` that calls the LLVM intrinsic `llvm.{name}`."""
 
     def typed(typing, x):
         def emit(context, builder, sig, args):
@@ -202,7 +213,7 @@ size = _rounded("fabs", "Return the absolute value of a float or of each of the 
 
 
 def _long_like(kind, value):
-    """Return an integer constant, repeated for all lanes where `kind` is a vector."""
+    """Return a 64-bit integer constant, in all lanes where the LLVM type `kind` is a vector."""
     if isinstance(kind, ir.VectorType):
         return ir.Constant(ir.VectorType(_LONG, LANES), [value] * LANES)
     return ir.Constant(_LONG, value)
@@ -222,7 +233,7 @@ def exponent_and_mantissa(typing, x):
         whole = ir.VectorType(_LONG, LANES) if isinstance(kind, ir.VectorType) else _LONG
         bits = builder.add(builder.bitcast(args[0], whole), _long_like(kind, _ONE - _SPLIT))
         biased = builder.or_(builder.lshr(bits, _long_like(kind, 52)), _long_like(kind, _WHOLE))
-        magic = builder.bitcast(_long_like(kind, _WHOLE + 1023), kind)
+        magic = builder.bitcast(_long_like(kind, _WHOLE + 1023), kind)  # 2^52 + 1023, the bias
         exponent = builder.fsub(builder.bitcast(biased, kind), magic)
         rest = builder.and_(bits, _long_like(kind, (1 << 52) - 1))
         mantissa = builder.bitcast(builder.add(rest, _long_like(kind, _SPLIT)), kind)
@@ -239,6 +250,7 @@ def power_of_two(typing, k):
     def emit(context, builder, sig, args):
         kind = args[0].type
         whole = ir.VectorType(_LONG, LANES) if isinstance(kind, ir.VectorType) else _LONG
+        # k + 2^52 + 1023 has the biased exponent k + 1023 in its last bits; they are shifted up.
         magic = builder.bitcast(_long_like(kind, _WHOLE + 1023), kind)
         bits = builder.bitcast(builder.fadd(args[0], magic), whole)
         return builder.bitcast(builder.shl(bits, _long_like(kind, 52)), kind)

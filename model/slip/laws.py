@@ -66,7 +66,7 @@ def law_options(law: SlipLaw) -> dict[str, Any]:
     """Return the options with which `slip_law` restores a law.
 
     Args:
-        law: A law of a class in `LAWS`, or such a law with its sides apart.
+        law: A law of a class in `LAWS`, or a `SidedLaw` of one.
     """
     if isinstance(law, SidedLaw):
         return {**law_options(law.law), SIDES: APART}
@@ -74,7 +74,7 @@ def law_options(law: SlipLaw) -> dict[str, Any]:
 
 
 def _require_known(what: str, found: str, known: tuple[str, ...]) -> None:
-    """Raise `DomainError` unless `found` is one of `known`; it names these and the nearest."""
+    """Raise `DomainError` unless `found` is in `known`; its message suggests the nearest name."""
     if found in known:
         return
     nearest = similar_name(found, known)

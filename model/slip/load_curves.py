@@ -91,12 +91,17 @@ def curves_by_load(
 
 
 def _curve(slip: Array, load: Array, force: Array) -> LoadCurve:
+    """Return the points of one curve, their forces scaled in proportion to the median load."""
     level = float(np.median(load))
     return LoadCurve(level, *_merged(slip, force * level / load))
 
 
 def _merged(slip: Array, force: Array) -> tuple[Array, Array]:
-    """Sort points by slip; return means of slip and force of points that are one, (m,) each."""
+    """Sort points by slip and average those of nearly equal slip; return slip and force, (m,) each.
+
+    A point is averaged with the one before it if its slip is larger by at most `_SAME_SLIP` of the
+    range of slip.
+    """
     order = np.argsort(slip)
     x, y = slip[order], force[order]
     begins = np.append(True, np.diff(x) > _SAME_SLIP * np.ptp(x)) if np.ptp(x) > 0 else x == x[0]

@@ -15,8 +15,8 @@ from model.slip.magic_formula import curvature_from_peak, magic_formula
 FEWEST_SAMPLES: Final = 6
 """Samples that four coefficients and a misfit need."""
 _RISE_TERMS = 3  # kappa, kappa³, kappa⁵: the slope is then within 0.1 % up to half the peak
-_STEEPER = (1.0, 2.0, 5.0)  # slope at zero slip over that to the first samples, of the starts
-_MOST_CURVATURE = 0.9  # E of a start
+_STEEPER = (1.0, 2.0, 5.0)  # starts: slope at zero slip over the steepest of origin to sample
+_MOST_CURVATURE = 0.9  # starts: largest E
 _BOUNDS = ([0.0, 1.0, 0.0, -np.inf], [np.inf, 2.0, np.inf, 1.0])  # one peak, and one sign
 
 
@@ -125,7 +125,16 @@ def read_off(slip: ArrayLike, force: ArrayLike) -> ReadOff:
 def _least_squares(
     kappa: Array, f: Array, start: tuple[float, float, float, float]
 ) -> tuple[tuple[Array, Array], float]:
-    """Return the closest B, C, D and E with their covariance, and the misfit, from one start."""
+    """Fit B, C, D and E by least squares from one start, within `_BOUNDS`.
+
+    Args:
+        kappa: Slip ratios, shape (n,) [-].
+        f: Force over its largest, shape (n,) [-].
+        start: B, C, D and E to start from.
+
+    Returns:
+        The coefficients with their covariance, and the root-mean-square residual [-].
+    """
     from scipy.optimize import OptimizeWarning, curve_fit
 
     with warnings.catch_warnings():  # of a covariance that samples do not tell: it is infinite then
@@ -138,7 +147,10 @@ def _least_squares(
 
 
 def _starts(kappa: Array, f: Array) -> list[tuple[float, float, float, float]]:
-    """Return B, C, D and E by Eq. (4-25) to (4-27), for slopes at zero slip of several sizes.
+    """Return starting values of B, C, D and E by Eq. (4-25) to (4-27), one set for each slope.
+
+    Samples may be too sparse for the slope at zero slip, so `_STEEPER` times that of the steepest
+    line from the origin to a sample are tried.
 
     Args:
         kappa: Slip ratios, shape (n,) [-].

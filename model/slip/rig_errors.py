@@ -13,7 +13,7 @@ ROLLING_RESISTANCE = 0.02
 RUN_OUT = 5e-5
 """Amplitude by which the radius of a disc at the contact varies once a turn [m]."""
 UNKNOWN_SCATTER = 0.002
-"""Scale of the slip of a block that the speeds do not show, of discs that are not known [-]."""
+"""Typical size of a block's slip that the measured speeds do not show, for unknown discs [-]."""
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class RigErrors:
     Attributes:
         radius_ratio: Of the relative error of the ratio of the discs' radii [-].
         rolling_resistance: Of the resistance of rolling over the load [-].
-        slip_scatter: Scale of the half-normal prior of the standard deviation of a block's slip
-            that the speeds do not show [-].
+        slip_scatter: Scale of the half-normal prior on the standard deviation of that part of a
+            block's slip which the measured speeds do not show [-].
         run_out: Standard deviation of each coefficient of run-out of a disc whose angle is
             recorded [m].
     """

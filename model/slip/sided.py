@@ -11,7 +11,7 @@ from model.arrays import Array
 from model.slip.law import Parameter, SlipLaw, Values
 
 N_SIDES = 2
-"""Number of parameters that a law has in addition where its sides are apart."""
+"""Number of parameters that a `SidedLaw` has in addition to those of its middle curve."""
 
 
 def side_factors(kappa: ArrayLike, d_K: ArrayLike, d_mu: ArrayLike) -> tuple[Array, Array]:
@@ -37,7 +37,7 @@ def side_factors(kappa: ArrayLike, d_K: ArrayLike, d_mu: ArrayLike) -> tuple[Arr
 
 @dataclass(frozen=True)
 class SidedLaw:
-    r"""A slip law with driving and braking apart, each a similar copy of one curve.
+    r"""A slip law whose driving and braking sides are differently scaled copies of one curve.
 
     .. math::
         F(\kappa) = m\, F_0(h \kappa)
@@ -74,7 +74,7 @@ class SidedLaw:
         return m * self.law.force(h * np.asarray(slip), load, values[:-N_SIDES])
 
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the derivative of the force with respect to slip ratio, driving at zero [N].
+        """Compute the derivative of the force by slip ratio; at zero slip the driving side's [N].
 
         Args:
             slip: Slip ratio [-].
@@ -112,7 +112,7 @@ class SidedLaw:
         return -self._peak(-1.0, load, values)
 
     def _peak(self, side: float, load: ArrayLike, values: Values) -> Array:
-        """Compute the absolute slip ratio of the peak on the side of a sign [-]."""
+        """Compute the absolute slip ratio of the peak, driving if `side` > 0, else braking [-]."""
         h = side_factors(side, *values[-N_SIDES:])[1]
         return self.law.peak_slip(load, values[:-N_SIDES]) / h
 

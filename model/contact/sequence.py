@@ -75,7 +75,7 @@ def contact_states(t: Array, contact: NDArray[np.bool_], *, least: float = 0.0) 
         contact: Which legs are on the ground, shape (n, 6).
         least: Shortest time that a state has to last [s].
     """
-    key = contact @ (1 << np.arange(N_LEGS))
+    key = contact @ (1 << np.arange(N_LEGS))  # a bit for each leg: one number for each state
     begins = np.concatenate([[0], np.flatnonzero(np.diff(key)) + 1])
     starts, ends = t[begins], np.append(t[begins[1:]], t[-1])
     lasts = ends - starts >= least - 1e-9
@@ -163,7 +163,11 @@ def contact_cycle(
 def _states_of_a_cycle(
     states: tuple[ContactState, ...], period: float, tolerance: float
 ) -> int | None:
-    """Return how many states before the last one the same began a period earlier, if any."""
+    """Return the number of states in a cycle; None if the last state has no repetition.
+
+    It is counted from the last state back to the nearest one of the same legs that began a period
+    earlier, within `tolerance`.
+    """
     last = len(states) - 1
     for count in range(1, last):  # the first state began before the walk
         if _repeats(states, last - count, count, period, tolerance):
@@ -174,7 +178,7 @@ def _states_of_a_cycle(
 def _repeats(
     states: tuple[ContactState, ...], i: int, count: int, period: float, tolerance: float
 ) -> bool:
-    """Return whether state i + count is state i, a period later."""
+    """Return whether states i and i + count have the same legs and begin a period apart."""
     one, other = states[i], states[i + count]
     return one.legs == other.legs and abs(other.start - one.start - period) <= tolerance
 
@@ -182,7 +186,10 @@ def _repeats(
 def _cycle(
     states: tuple[ContactState, ...], count: int, period: float, tolerance: float, start: float
 ) -> ContactCycle:
-    """Average the beginnings of states that repeat every `count` states, over their cycles."""
+    """Average the beginnings of states that repeat every `count` states, over their cycles.
+
+    `start` is the time at which a cycle begins; states are sorted by their time after that.
+    """
     number = np.arange(len(states)) // count
     begins = np.array([state.start for state in states]) - start - number * period
     mean = np.array([begins[k::count].mean() for k in range(count)])

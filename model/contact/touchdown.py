@@ -114,7 +114,20 @@ def _of_leg(
     step: NDArray[np.intp],
     wanted: dict[int, tuple[float, float]],
 ) -> list[Touchdown]:
-    """List one leg's touchdowns from its contacts and those that the gait asked for, by step."""
+    """List one leg's touchdowns, one for each step that has a contact or a missed touchdown.
+
+    The step of a leg that stands at the first sample is left out. A touchdown that the gait asked
+    for is missed if its step has no contact, and the leg is in a later step or another turn at the
+    last sample.
+
+    Args:
+        leg: Index of the leg.
+        t: Times of the samples, shape (n,) [s].
+        theta: Unwrapped leg angle, shape (n,) [rad].
+        spans: First sample of each contact, and the first one after it.
+        step: Number of each sample's step, shape (n,).
+        wanted: Time [s] and unwrapped angle [rad] of the touchdown asked for, by step.
+    """
     by_step: dict[int, list[tuple[int, int]]] = {}
     for span in spans:
         by_step.setdefault(int(step[span[0]]), []).append(span)
@@ -142,7 +155,11 @@ def _of_leg(
 
 
 def _spans(t: Array, contact: NDArray[np.bool_], least: float) -> list[tuple[int, int]]:
-    """Return first sample of each contact and the first after it, short gaps and contacts gone."""
+    """Return the first sample of each contact of a leg, and the first sample after it.
+
+    Gaps shorter than `least` [s] are closed, then contacts shorter than it are left out, unless
+    they touch the first or last sample: how long those last is not known.
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], contact, [False]]).astype(int)))
     spans: list[tuple[int, int]] = []
     for first, after in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
@@ -154,17 +171,17 @@ def _spans(t: Array, contact: NDArray[np.bool_], least: float) -> list[tuple[int
 
 
 def _turn(angle: ArrayLike) -> NDArray[np.intp]:
-    """Return the numbers of the turns that unwrapped leg angles are in."""
+    """Return the number of the turn of each unwrapped leg angle; turn 0 is -90 to 270 degrees."""
     return np.floor((np.asarray(angle) + np.pi / 2) / (2 * np.pi)).astype(np.intp)
 
 
 def _within(angle: float, turn: int) -> float:
-    """Return an unwrapped angle within its turn [rad]."""
+    """Return an unwrapped angle less its whole turns, from -pi/2 to 3/2 pi [rad]."""
     return float(angle - 2 * np.pi * turn)
 
 
 def _at(t: Array, theta: Array, sample: int | None, turn: int) -> tuple[float, float]:
-    """Return time and angle within a turn at a sample; NaN without one [s, rad]."""
+    """Return time [s] and angle less whole turns [rad] at a sample; NaN if `sample` is None."""
     if sample is None:
         return np.nan, np.nan
     return float(t[sample]), _within(theta[sample], turn)

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.design.targets import Target
 
-PASSES = 4  # of exchanges; more change nothing
-SKELETON = 7  # slips that are always measured
+PASSES = 4  # most passes of exchanges; further ones have changed nothing
+SKELETON = 7  # number of slips that are always measured
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,9 @@ class Design:
 
     Attributes:
         counts: Number of points at each candidate slip, the same at every load, shape (n,).
-        objective: Mean log standard deviation of the targets that is left [-].
-        covariance: Covariance of the coordinates that is left, shape (m, d, d) [-].
+        objective: Mean log standard deviation of the targets after these points [-].
+        covariance: Posterior covariance of the coordinates after these points, around each of m
+            draws, shape (m, d, d) [-].
     """
 
     counts: NDArray[np.intp]
@@ -45,15 +46,15 @@ def objective(covariance: Array, targets: Sequence[Target]) -> float:
 
 
 def spaced(low: float, high: float, count: int) -> Array:
-    """Return increasing slip ratios of a range, spaced quadratically towards zero.
+    """Return increasing slip ratios over a range, spaced quadratically: closest near zero.
 
-    Of a range with both signs each side has about half of them, and zero is one; of another the
-    ends belong to them.
+    Both ends of the range are among them. If it has both signs, so is zero, and each side has about
+    half of them.
 
     Args:
         low: Smallest slip ratio [-].
         high: Largest slip ratio [-].
-        count: About how many, at least 3.
+        count: Number of slip ratios, at least 3; with both signs an even one gives one more.
 
     >>> spaced(0.0, 1.0, 5).tolist()
     [0.0, 0.0625, 0.25, 0.5625, 1.0]
@@ -72,11 +73,13 @@ def spaced(low: float, high: float, count: int) -> Array:
 def planned(
     before: Array, roots: Array, counts: NDArray[np.intp], targets: Sequence[Target]
 ) -> Design:
-    """Return what given numbers of points leave.
+    """Compute the posterior covariance and the objective after given numbers of points.
 
     Args:
-        before: Information before, the prior's included, shape (m, d, d).
-        roots: Roots of the information of a point at each slip and load, shape (m, n, l, d).
+        before: Fisher information before these points, the prior's included, around each of m
+            draws, shape (m, d, d).
+        roots: Vectors v whose outer products v v^T are the information of one point at each slip
+            and load, shape (m, n, l, d).
         counts: Number of points at each slip, shape (n,).
         targets: The targets.
     """
@@ -93,11 +96,13 @@ def choose_slips(
     count: int,
     kept: NDArray[np.intp],
 ) -> Design:
-    """Choose slips greedily, then exchange them one by one while that leaves less.
+    """Choose slips greedily, then exchange them one by one while that lowers the objective.
 
     Args:
-        before: Information before, the prior's included, shape (m, d, d).
-        roots: Roots of the information of a point at each slip and load, shape (m, n, l, d).
+        before: Fisher information before these points, the prior's included, around each of m
+            draws, shape (m, d, d).
+        roots: Vectors v whose outer products v v^T are the information of one point at each slip
+            and load, shape (m, n, l, d).
         targets: The targets.
         count: Number of points at each load, at least as many as are kept.
         kept: Indices of slips that are always measured.
@@ -118,7 +123,10 @@ def _exchange(
     before: Array, roots: Array, targets: Sequence[Target], counts: NDArray[np.intp],
     fixed: NDArray[np.intp],
 ) -> bool:  # fmt: skip
-    """Move points to better slips, in place; return whether one was moved."""
+    """Make one pass of exchanges: move each point to the best slip, unless it is fixed.
+
+    `counts` (n,) is changed in place; `fixed` (n,) of them stay. Return whether a point was moved.
+    """
     moved = False
     for index in np.flatnonzero(counts > fixed):
         for _ in range(counts[index] - fixed[index]):
@@ -133,6 +141,7 @@ def _exchange(
 
 
 def _information(before: Array, roots: Array, counts: NDArray[np.intp]) -> Array:
+    """Compute the Fisher information (m, d, d) with `counts` (n,) points added to `before`."""
     some = np.flatnonzero(counts)
     chosen = roots[:, some] * np.sqrt(counts[some])[:, None, None]
     m, d = before.shape[:2]
@@ -143,10 +152,11 @@ def _information(before: Array, roots: Array, counts: NDArray[np.intp]) -> Array
 def _best_addition(
     information: Array, roots: Array, targets: Sequence[Target], *, stay: int | None = None
 ) -> int:
-    """Return the slip at which one more point leaves the least; `stay` unless another is better.
+    """Return the index of the slip at which one more point lowers the objective most.
 
-    By Woodbury's identity a point at slip i with roots V (d, l) takes
-    b G^-1 b^T off a target's variance, b = a C V, G = 1 + V^T C V.
+    It is `stay`, if given, unless another slip is better by more than rounding. By Woodbury's
+    identity a point at slip i with roots V (d, l) reduces a target's variance by b G^-1 b^T, with
+    b = a C V and G = 1 + V^T C V.
     """
     covariance = np.asarray(np.linalg.inv(information), dtype=float)
     v = np.swapaxes(roots, 2, 3)  # (m, n, d, l)

@@ -51,7 +51,7 @@ class Conditions:
 
 
 def conditions_of(blocks: SlipBlocks) -> Conditions:
-    """Return the medians of blocks and runs that have been measured."""
+    """Compute the medians over measured blocks, or over runs for what belongs to a run."""
     load = np.maximum(blocks.normal_force, 1e-9)
     return Conditions(
         length=float(np.median(blocks.count)),
@@ -96,6 +96,9 @@ def planned_blocks(
 def usable_draws(posterior: SlipPosterior, z: Array, most: int) -> Array:
     """Return the first draws around which the law has its shape, shape (m, d), m up to `most`.
 
+    Around a draw means at it and at a step to both sides along each coordinate: all of these must
+    be finite and have a finite prior density, since derivatives are taken by these steps.
+
     Args:
         posterior: Law and priors, not straightened.
         z: Draws of its coordinates, shape (w, d).
@@ -123,7 +126,12 @@ def _around(z: Array) -> Array:
 def _linear(
     posterior: SlipPosterior, blocks: SlipBlocks, z: Array
 ) -> tuple[PredictedForces, Array, Array]:
-    """Return predictions (n,), derivative (n, d) [N] and values (k + 12,) around a draw z (d,)."""
+    """Linearise the predicted block means around a draw z (d,) by central differences.
+
+    Returns:
+        Predictions at z (n,), their derivative by the coordinates (n, d) [N], and the values of
+        the k parameters of the law and 12 of the measurement at z (k + 12,).
+    """
     d = len(z)
     values = posterior.values(_around(z))
     every = predict_blocks(blocks, posterior.law, values)
@@ -162,8 +170,10 @@ def run_roots(
         posterior: Law and priors, not straightened.
         blocks: One block for each of r planned runs.
         z: Draws of the coordinates, shape (m, d).
-        n_blocks: Numbers of blocks of a run, above 0, fractions too, shape (t,).
-        shared: Factor on the variance of the slip error that a run shares, at each of them, (t,).
+        n_blocks: Numbers of blocks in a run to compute roots for, above 0, not necessarily whole,
+            shape (t,).
+        shared: Factor on the variance of the slip error that all blocks of a run share, one for
+            each of `n_blocks`, shape (t,).
 
     Returns:
         The roots, whose outer products are the information, shape (m, t, r, d) [-].
@@ -185,7 +195,8 @@ def run_roots(
 def white_sizes(noise: Array, scatter: Array, *, rho: float, most: int) -> Array:
     r"""Compute :math:`1^T S_n^{-1} 1` of runs of 1 to `most` blocks, shape (most, r) [1/N^2].
 
-    S is the covariance of AR(1) noise and independent scatter. The filter is that of
+    This is the information on a constant that moves all n blocks of a run alike. S is the
+    covariance of AR(1) noise and independent scatter; the Kalman filter is that of
     `model.bayes.likelihood.filter_runs`.
 
     Args:
@@ -208,7 +219,7 @@ def white_sizes(noise: Array, scatter: Array, *, rho: float, most: int) -> Array
 
 
 def _between(sizes: Array, n: float) -> Array:
-    """Interpolate sizes (most, r), of 1 block and more, at a number of blocks; 0 at none."""
+    """Interpolate `white_sizes`, shape (most, r), linearly at a number n of blocks; 0 at n = 0."""
     below = int(np.floor(n))
     low = sizes[below - 1] if below else np.zeros_like(sizes[0])
     high = sizes[min(below, len(sizes) - 1)]

@@ -11,7 +11,7 @@ from model.bayes.checks.linear import STEP
 from model.bayes.posterior import SlipPosterior
 from model.errors import InsufficientData
 
-FLAT = 1e-3  # a force smaller than this share of the load has no size to be relative to
+FLAT = 1e-3  # share of the load below which a force is too small to state a relative error of it
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Target:
 
 
 def parameter_target(posterior: SlipPosterior, z: Array, name: str) -> Target:
-    """Return a parameter of the law as target.
+    """Return the target that is one parameter, in its own unit.
 
     Args:
         posterior: Law and priors, not straightened.
@@ -61,7 +61,7 @@ def parameter_target(posterior: SlipPosterior, z: Array, name: str) -> Target:
 def force_target(
     posterior: SlipPosterior, z: Array, *, name: str, slips: Array, loads: Array
 ) -> Target:
-    """Return traction at slips and loads, relative to its size, as target.
+    """Return the target that is traction at every pair of slip and load, relative to its size.
 
     Args:
         posterior: Law and priors, not straightened.
@@ -109,10 +109,10 @@ def regressed_target(
     name: str, drawn: Array, values: Array, *, parts: tuple[str, ...],
     units: tuple[str, ...], n_draws: int,
 ) -> Target:  # fmt: skip
-    """Return quantities that were computed for some draws as target, by linear regression.
+    """Return the target whose derivatives are slopes of a linear regression over draws.
 
-    Directions in which draws do not differ have no slope (least squares of least norm), as nothing
-    is known of these; standardising the draws makes this independent of their spread.
+    The slope is zero in directions in which the draws do not differ (least squares of least norm),
+    as nothing is known of these; standardising the draws makes this independent of their spread.
 
     Args:
         name: Name of the target.
@@ -140,7 +140,10 @@ def regressed_target(
 
 
 def _derivative(z: Array, of: Callable[[Array], Array]) -> Array:
-    """Differentiate a function of coordinates (w, d) to (w, p), around z (m, d), to (m, p, d)."""
+    """Differentiate a function by central differences of `STEP` around each z (m, d).
+
+    `of` maps coordinates (m, d) to p quantities (m, p). The result has shape (m, p, d).
+    """
     steps = STEP * np.eye(z.shape[1])
     columns = [(of(z + step) - of(z - step)) / (2 * STEP) for step in steps]
     return np.stack(columns, axis=-1)

@@ -192,10 +192,13 @@ class WalkFit:
         return values
 
     def _starts(self, weight: Array, case: int, densest: int) -> list[Array]:
-        """Return two starting points z (16,) of a case's optimisation: zero, and its densest draw.
+        """Return two starting points z (16,) of a case's optimisation, in standard coordinates.
 
-        In the first, a wrongly mounted leg's further offset is its weighted mean: a scan over the
-        offset has several maxima, and the draws show which of them is the highest.
+        The first is zero, the second is the draw `densest`, at which the posterior is highest.
+
+        In the first, a wrongly mounted leg's further offset is its mean by `weight`, which is zero
+        for other cases: a scan over the offset has several maxima, and the draws show which of them
+        is the highest.
         """
         plain, drawn = np.zeros(WRONG + 1), np.zeros(WRONG + 1)
         if self._density.cases[case] is not None:

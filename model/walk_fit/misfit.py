@@ -130,11 +130,11 @@ class WalkMisfit:
 
         Args:
             state: The m states.
-            walked: Their walks, by `walk_states`.
+            walked: Their walks by `walk_states`, which the states' steering and stride then bend.
 
         Returns:
-            Residuals of the poses after the first, then of roll and pitch if there is an IMU, shape
-            (m, size) [-].
+            Residuals of x, y and yaw of each pose after the first, then of roll and pitch if there
+            is an IMU, shape (m, size) [-].
         """
         paths = bent(walked.poses, distance=state.stride, curvature=state.steering)
         return self._with_tilt(self._difference(paths) @ self.root.T, walked)
@@ -217,6 +217,7 @@ class WalkMisfit:
         paths = self._walked(draws, executor).poses
         one = paths.draws(slice(1))
         total = self._of_tracker(self._difference(one)[0])
+        # Without the small term an exact tracker would leave nothing to invert.
         total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
         total += self._of_contacts(spread, executor)
         if len(several) > 1:  # their spread includes the error of the step
@@ -257,7 +258,7 @@ class WalkMisfit:
     def _of_model(self, path: Poses, spread: ModelSpread) -> Array:
         """Compute the covariance (k, k) due to the model's errors of distance and curvature.
 
-        Derivatives of the only draw of `path` are forward differences.
+        Derivatives are forward differences of `path`, which has one draw.
         """
         no, small = np.zeros(1), np.full(1, _BEND)
         here = self._difference(path)[0]
@@ -289,7 +290,7 @@ class StateToWalk:
         robot: The robot as described.
         legs: Leg angles.
         table: The slip law as calibrated.
-        times: How they are walked.
+        times: Times of the poses to keep, step and contacts, and whether roll and pitch are kept.
         state: The state, of one draw.
     """
 
@@ -340,7 +341,7 @@ def walk_states(
 
 
 def _next_states(results: Iterator[Array], name: str) -> Array:
-    """Return the next result; raise `WalkError` that names the walk."""
+    """Return the next task's result; name the walk in the `WalkError` of a task that fails."""
     try:
         return next(results)
     except WalkError as error:

@@ -54,6 +54,7 @@ class CaseMode(Mode):
 
 
 def _evidence(mode: Mode) -> float:
+    """Return a mode's log evidence, as a key to sort by."""
     return mode.log_evidence
 
 
@@ -85,8 +86,9 @@ class ModeSearch:
     def modes(self, *, progress: Callable[[float], None]) -> list[CaseMode]:
         """Find the Gaussian of every case, in the order of `all_cases`, by scans and optimisation.
 
-        Optimised are no wrongly mounted leg and the `CLIMBED` others of the largest log evidence
-        within `UNLIKELY` of the best; others keep a scan's. `progress` gets the share done.
+        The case without a wrongly mounted leg is optimised, and up to `CLIMBED` others whose log
+        evidence by the scans is the largest and within `UNLIKELY` of the best. All others keep the
+        better scan's Gaussian. `progress` gets the share done.
 
         Raises:
             WalkError: A walk diverged, or the robot cannot stand at its start.
@@ -184,6 +186,8 @@ class ModeSearch:
     def scan(self, plain: CaseMode, J: Array) -> list[CaseMode]:
         """Estimate the Gaussian of every case by a scan over the offset of one leg at a time.
 
+        If a leg is wrong in a single walk, the residuals of the other walks stay as at `plain`.
+
         Args:
             plain: Point without a wrongly mounted leg about which the scan is made.
             J: Jacobian of the residuals at that point, shape (n, 16).
@@ -223,7 +227,8 @@ class ModeSearch:
 
         Args:
             case: The wrongly mounted leg.
-            r: Residuals at each of the offsets `FINE`, all else moved to zero by `J`, (241, n).
+            r: Residuals at each of the offsets `FINE`, with all other parameters moved linearly, by
+                `J`, to the middle of their prior, shape (241, n).
             J: Jacobian of the residuals, shape (n, 16).
             follow: Inverse of I + J J^T, shape (n, n).
         """
@@ -236,7 +241,7 @@ class ModeSearch:
         evidence = log.max() + np.log(area) + 0.5 * np.linalg.slogdet(inner)[1]
         z = -r @ J @ inner
         z[:, WRONG] = wrong
-        inner[WRONG, WRONG] = 0.0
+        inner[WRONG, WRONG] = 0.0  # its variance is that of the scan, below
         mean = weight @ z
         covariance = inner + (z - mean).T @ ((z - mean) * weight[:, None])
         return self._mode(case, mean, covariance, float(evidence))

@@ -134,7 +134,7 @@ class WalkPosterior:
         return legs_of(self.best[None], self.best_case, walk=walk)
 
     def with_wrong_legs(self) -> Array:
-        """Return all draws in the order of `NAMES`, shape (n, 15).
+        """Return all draws of the parameters in the order of `NAMES`, shape (n, 15).
 
         A leg's offset includes the further offset of a leg that is wrongly mounted in every walk.
         """
@@ -159,7 +159,10 @@ class WalkPosterior:
         )
 
     def found(self) -> list[CaseFound]:
-        """Compute probability and leg offset of each case with non-zero weight, likeliest first."""
+        """Compute posterior probability and leg offset of each case, likeliest first.
+
+        Cases without weight are left out.
+        """
         rows = []
         for i, case in enumerate(self.cases):
             weight = np.where(self.case == i, self.weight, 0.0)

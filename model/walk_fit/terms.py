@@ -24,7 +24,7 @@ from model.arrays import Array
 class Terms:
     """Quadratic form of the residuals of walks in steering and stride, for m draws of all else.
 
-    The last axes are steering, then stride, in units of their prior standard deviations.
+    Axes of length 2 are steering, then stride, in units of their prior standard deviations.
 
     r_0 are the whitened residuals without steering and stride, D their derivatives by the two.
 
@@ -88,9 +88,13 @@ class Terms:
         return -(covariance @ self.slope.sum(axis=1)[..., None])[..., 0], covariance
 
     def squares_at(self, y: Array) -> Array:
-        """Compute each walk's sum of squared residuals (m, walks) at steering and stride (m, 2).
+        """Compute each walk's sum of squared whitened residuals at given steering and stride [-].
 
-        These are in units of their prior standard deviations.
+        It is :math:`|r_0 + D y|^2`, not integrated, shape (m, walks).
+
+        Args:
+            y: Steering and stride of each draw, in units of their prior standard deviations, shape
+                (m, 2).
         """
         linear = (self.slope * y[:, None]).sum(axis=2)
         return self.square + 2 * linear + np.einsum("mi,mwij,mj->mw", y, self.curvature, y)

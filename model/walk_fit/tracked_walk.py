@@ -47,5 +47,5 @@ class TrackedWalk:
 
 
 def middle(legs: LegReference | InexactLog) -> LegReference:
-    """Return the middle motion that an inexact log allows; other leg angles as they are."""
+    """Return an inexact log's leg angles smoothed within what it allows; others as they are."""
     return legs.smooth() if isinstance(legs, InexactLog) else legs

@@ -37,9 +37,9 @@ def arc_to(x: float, y: float) -> Arc | None:
 
 
 def arc_and_straight_to(x: float, y: float, radius: float) -> tuple[Arc, Arc] | None:
-    """Return an arc of a radius and the straight that continues it to a place.
+    """Return an arc of a given radius and the straight, tangent to it, that leads on to a place.
 
-    The arc turns to the side of the place, to the left for one straight behind.
+    The arc turns to the side of the place, to the left for a place straight ahead or behind.
 
     Args:
         x: Distance ahead [m].
@@ -76,7 +76,7 @@ def two_arcs_to(x: float, y: float, heading: float) -> tuple[Arc, Arc] | None:
         heading: Heading at the end [rad].
 
     Returns:
-        The two; None where there are none, as for a place straight behind.
+        The two; None where there are none, as for a place straight behind with heading zero.
     """
     place, along = np.array([x, y]), np.array([np.cos(heading), np.sin(heading)])
     ahead = np.array([1.0, 0.0])
@@ -117,7 +117,18 @@ def arc_straight_arc_to(x: float, y: float, heading: float, radius: float) -> tu
 def _between_circles(
     x: float, y: float, heading: float, radius: float, first: float, second: float
 ) -> tuple[Arc, Arc, Arc] | None:
-    """Return arc, straight and arc that turn to given sides, 1 left and -1 right, if there are."""
+    """Return arc, straight and arc to a pose, with arcs that turn to given sides.
+
+    None where circles of different sides overlap, which leaves no straight between them.
+
+    Args:
+        x: Distance ahead [m].
+        y: Distance to the left [m].
+        heading: Heading at the end [rad].
+        radius: Radius of both arcs [m].
+        first: Side to which the first arc turns: 1 left, -1 right.
+        second: Side to which the last arc turns.
+    """
     to_x = x - second * radius * np.sin(heading)  # from one circle's centre to the other's
     to_y = y + second * radius * np.cos(heading) - first * radius
     far, along = float(np.hypot(to_x, to_y)), float(np.arctan2(to_y, to_x))
@@ -135,6 +146,9 @@ def _between_circles(
 
 
 def _turned(angle: float, side: float) -> float:
-    """Return an angle as a turn to a side, 1 left and -1 right, of less than a whole one [rad]."""
+    """Return the turn to a side, 1 left and -1 right, equal to an angle modulo 2 pi [rad].
+
+    Less than a whole turn, and positive to the left; 0 for a whole turn but for rounding.
+    """
     turn = (side * angle) % (2 * np.pi)
     return 0.0 if turn > 2 * np.pi - 1e-6 else side * turn

@@ -5,7 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-ARM = 0.15  # m; an error of heading counts as that of a foot so far from the body's centre
+ARM = 0.15  # m; lever arm by which an error of heading [rad] counts as a distance
 
 
 @dataclass(frozen=True)

@@ -70,6 +70,7 @@ class GrowingWalk:
         Raises:
             WalkError: The robot cannot stand at the start, or the walk diverged.
         """
+        # A program without cycles has no leg angles: its start is that of a first cycle.
         begun = legs if legs.end > 0 else legs.with_cycle(legs.cycles[0].gait)
         dt = self._options.dt
         last = self._start(begun.reference()) if self.reached is None else self.reached
@@ -82,13 +83,17 @@ class GrowingWalk:
         return x, y, yaw
 
     def _start(self, reference: SampledReference) -> Reached:
+        """Return the robot at rest on its legs at time zero, before the first step."""
         theta = reference.angles(0.0)[0] + self._robot.leg_offset
         state = start_state(self._robot, theta, self._options, ground=self._ground)
         yaw = float(roll_pitch_yaw(state.q[None])[0, 2])
         return Reached(0, state, np.array([state.p[0], state.p[1], yaw]))
 
     def _advanced(self, reference: SampledReference, last: Reached, end: int) -> Reached:
-        """Integrate a copy of the last state to the step `end`, and append its move, bent."""
+        """Walk from the last state, which stays as it is, to time step number `end`.
+
+        The motion is bent and stretched, then added to the last pose.
+        """
         dt = self._options.dt
         theta = reference.angles(dt * np.arange(last.step, end + 1)) + self._robot.leg_offset
         state = State(*(each.copy() for each in last.state))

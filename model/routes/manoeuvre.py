@@ -23,8 +23,8 @@ from model.walk.traction import TractionTable
 LEAST_SHARE = 0.003  # of a stance: below, a stride does nothing
 SOLVED = 2e-4  # m; as near as a manoeuvre is fitted, as `Goal.missed` counts
 ROUNDS = 8  # most rounds of a fit
-_STEP = 0.01  # of shares and bends, for differences
-_SHORTER = 0.4  # of a step that leads further away
+_STEP = 0.01  # step in shares and bends for finite differences
+_SHORTER = 0.4  # factor on a step that leads further away, to try it once more
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,8 @@ class Stepping:
         flight_time: tau_f [s].
         double_stance: tau_Delta [s].
         touchdown: Touchdown angle of a whole stance [rad].
-        liftoff: Its lift-off angle; that of equal hip height when None [rad].
+        liftoff: Lift-off angle of a whole stance; when None, that at which the hip is as high as at
+            touchdown [rad].
         leg_arc: Angle of the legs' arc [rad].
     """
 
@@ -50,7 +51,13 @@ class Stepping:
     leg_arc: float = np.pi
 
     def stance(self, share: float) -> tuple[float, float | None]:
-        """Return touchdown and lift-off angles of a share of the stance; None as in `liftoff`."""
+        """Scale the stance; return its touchdown and lift-off angles [rad].
+
+        The lift-off angle is None, for equal hip height, where `liftoff` is.
+
+        Args:
+            share: Stance angle over that of the whole stance [-].
+        """
         whole = self.liftoff
         up = float(ideal_liftoff(self.touchdown, self.leg_arc)) if whole is None else whole
         down, up = scaled_stance(self.touchdown, up, share, self.leg_arc)
@@ -75,8 +82,8 @@ class Part:
     """A part of a manoeuvre: whole strides of one gait.
 
     Attributes:
-        bend: Half of what steering lacks to 1, positive to the left: 0 is straight, 1/2 about the
-            inner legs and 1 on the spot [-].
+        bend: (1 - steering) / 2 with the sign of the turn, positive to the left: 0 walks straight,
+            1/2 turns about inner legs that step on the spot, 1 turns the robot on the spot [-].
         share: Stance angle of the outer legs over that of the whole stance, up to 1 [-].
         strides: Number of strides.
     """
@@ -161,8 +168,9 @@ def fitted(
 ) -> Fitted:  # fmt: skip
     """Fit shares and bends of a manoeuvre so that it ends at a goal, by Gauss-Newton.
 
-    Of several solutions it goes to the one nearest to the start; where there is none, towards the
-    nearest end.
+    Derivatives are forward differences of walks. It ends within `SOLVED` of the goal, after
+    `ROUNDS` rounds, or where no step leads nearer, as where no solution exists. Of several
+    solutions it tends to the one nearest to the start.
 
     Args:
         parts: The parts to begin with.
@@ -172,6 +180,7 @@ def fitted(
         around: What it is walked with.
 
     Raises:
+        DomainError: A gait is impossible, or there is no slip law.
         WalkError: The walk diverged.
     """
 
@@ -202,9 +211,16 @@ def fitted(
 
 
 def _within(slopes: Array, off: Array, values: Array, least: Array) -> Array:
-    """Return the shortest step that would end at the goal, within the bounds of all values.
+    """Return the least-squares step (Gauss-Newton) towards the goal within the values' bounds.
 
-    A value that would leave its bounds is set to the bound, and the others make up for it.
+    Of equally good steps it is the shortest. A value that would leave its bounds is set to the
+    bound, and the others make up for it.
+
+    Args:
+        slopes: Derivatives of `off` by the values, shape (2 or 3, d).
+        off: By how much the goal is missed now, as `Goal.missed`, shape (2 or 3,) [m].
+        values: Values now, shape (d,).
+        least: Lower bounds, shape (d,); the upper ones are 1.
     """
     way, open_ = np.zeros(len(values)), np.ones(len(values), dtype=bool)
     for _ in range(len(values)):
@@ -222,7 +238,7 @@ def _within(slopes: Array, off: Array, values: Array, least: Array) -> Array:
 def _with(
     parts: Sequence[Part], free: Sequence[tuple[int, str]], values: Array
 ) -> tuple[Part, ...]:
-    """Return the parts with new values of what is free."""
+    """Return the parts with the values of the fields that `free` lists, as in `fitted`."""
     changed = list(parts)
     for (i, name), value in zip(free, values.tolist(), strict=True):
         changed[i] = replace(changed[i], **{name: value})

@@ -16,9 +16,9 @@ from model.walk.ground import FLAT, Ground
 from model.walk.traction import TractionTable
 
 MOST_CYCLES = 1000  # of one segment
-CLOSE = np.radians(0.05)  # as near as a segment's heading is found
-TRIALS = 20  # most walks of a cycle to find its heading
-TRIES = 3  # most cycles that are stopped to end at a heading
+CLOSE = np.radians(0.05)  # tolerance on the heading at which a segment ends [rad]
+TRIALS = 20  # most walks of one cycle to find when its legs stop
+TRIES = 3  # most cycles of a segment whose legs are stopped to end at a heading
 
 _Added = Callable[[ProgramLegs, float], None]
 """Called with the program and the share of a segment that is laid out, after every cycle."""
@@ -154,7 +154,7 @@ def lay_out(
 def _laid_out(
     legs: ProgramLegs, segment: Segment, walk: GrowingWalk | None, added: _Added
 ) -> tuple[ProgramLegs, SegmentEnd]:
-    """Return the program with one more segment, and where that ended."""
+    """Return the program with one more segment, by the way in which it ends, and its end."""
     gait, until = segment.gait, segment.until
     if gait is None or until is None:
         legs, cycles, missed = legs.with_stand(segment.stand), 0, 0.0
@@ -222,10 +222,15 @@ def _walked_near(
 def _turned(
     legs: ProgramLegs, gait: CycleGait, heading: float, walk: GrowingWalk, added: _Added
 ) -> tuple[ProgramLegs, int, float]:
-    """Return the program with cycles until the robot has turned by a heading, their number, miss.
+    """Add cycles until the robot has turned by a heading to either side, and stop its legs there.
 
-    In the last cycle the legs are stopped when it has. Where the heading jumps over the one asked
-    for as a leg lifts off, they are stopped before that, and a further cycle does the rest.
+    In the last cycle the legs are stopped at the time at which the heading is reached. Where the
+    heading jumps over the one asked for as a leg lifts off, they are stopped before that, and a
+    further cycle does the rest; after `TRIES` such cycles the nearest is taken.
+
+    Returns:
+        The program, the number of cycles added, and how much further than asked for the robot
+        turned [rad].
     """
     start, turned, tries = walk.pose(legs)[2], 0.0, 0
     for cycles in range(1, MOST_CYCLES + 1):
@@ -249,7 +254,7 @@ def _turned(
         )
         tries += 1
         if abs(value) <= CLOSE or tries == TRIES:
-            missed(time)
+            missed(time)  # leaves `walk` at the end of the program that is returned
             return whole.stopped_at(time), cycles, value
         turned = missed(early) + heading
         legs = whole.stopped_at(early)

@@ -26,8 +26,8 @@ from model.routes.manoeuvre import (
 )
 
 MOST_DETOUR = 2.0  # length of one or two arcs over the distance; beyond it a straight is put in
-FITS = 6  # most numbers of strides that are tried
-NOTHING = 0.004  # strides; less is left out
+FITS = 6  # most further fits with other numbers of strides
+NOTHING = 0.004  # strides; a part of fewer is left out
 _MEASURED = 3  # strides walked to measure a stride's length and turn
 
 
@@ -45,16 +45,17 @@ class Stride:
     arm: float
 
     def part(self, arc: Arc) -> Part | None:
-        """Return the strides that lead along an arc or straight; None if it is next to nothing.
+        """Return the strides that lead along an arc or straight; None for fewer than `NOTHING`.
 
-        An arc without length is a turn on the spot.
+        An arc without length is a turn on the spot. The outer legs walk the arc's length and
+        `arm` for each radian of turn; a whole number of strides shares this equally.
         """
         radius = np.inf if arc.turn == 0 else arc.length / abs(arc.turn)
         bend = self.arm / (radius + self.arm)
         strides = (arc.length + self.arm * abs(arc.turn)) / self.length
         if strides < NOTHING:
             return None
-        whole = max(1, int(np.ceil(strides - 0.02)))
+        whole = max(1, int(np.ceil(strides - 0.02)))  # up to 2 % of a stride short: no further one
         return Part(float(np.copysign(bend, arc.turn)), min(1.0, strides / whole), whole)
 
 
@@ -126,9 +127,11 @@ def curve(goal: Goal, stride: Stride, stepping: Stepping, around: Surroundings) 
 
 
 def _arcs(goal: Goal, radius: float) -> tuple[Sequence[Arc], bool]:
-    """Return arcs and straights of a curve to a goal, and whether arcs are of any radius.
+    """Return arcs and straights of a curve to a goal, and whether their radii may be fitted.
 
-    Arcs of any radius are of at least the given one where there is a choice; others have it.
+    One or two arcs are returned, with radii to be fitted, if none is tighter than `radius` [m] and
+    they are at most `MOST_DETOUR` times as long as the straight way. Else arcs of that radius with
+    a straight are returned, but a single tighter arc to a place that these cannot reach.
     """
     far = float(np.hypot(goal.x, goal.y))
 
@@ -157,7 +160,9 @@ def _planned(
 ) -> Fitted | None:  # fmt: skip
     """Fit a manoeuvre of arcs and straights to a goal, with as few strides as lead there.
 
-    Shares are fitted, and the bends of arcs if `bends`. None if there is nothing to walk.
+    The shares of all parts are fitted, and their bends if `bends`. Strides are added while the goal
+    is missed by more than `SOLVED`, else taken away, at most `FITS` times and while the fit is no
+    worse. None if there is nothing to walk.
     """
     parts = tuple(part for part in map(stride.part, arcs) if part is not None)
     if not parts:
@@ -178,7 +183,7 @@ def _planned(
 
 
 def _more_strides(found: Fitted) -> tuple[Part, ...] | None:
-    """Return parts with a stride more where the whole stance is used; None if none is."""
+    """Add a stride to each part that uses the whole stance (share 1); None if no part does."""
     at_most = [part.share > 1 - 1e-9 for part in found.parts]
     if not any(at_most):
         return None
@@ -189,7 +194,7 @@ def _more_strides(found: Fitted) -> tuple[Part, ...] | None:
 
 
 def _fewer_strides(found: Fitted) -> tuple[Part, ...] | None:
-    """Return parts with a stride less where the whole stance suffices then; None if nowhere."""
+    """Take a stride off each part that 99 % of the whole stance then suffices for; None if none."""
     fewer = [part.share * part.strides <= 0.99 * (part.strides - 1) for part in found.parts]
     if not any(fewer):
         return None
@@ -200,5 +205,5 @@ def _fewer_strides(found: Fitted) -> tuple[Part, ...] | None:
 
 
 def _of_strides(part: Part, strides: int) -> Part:
-    """Return a part of another number of strides that leads about as far."""
+    """Return a part with another number of strides and the share, up to 1, to lead as far."""
     return replace(part, strides=strides, share=min(1.0, part.share * part.strides / strides))

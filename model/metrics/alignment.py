@@ -40,7 +40,7 @@ class Similarity(NamedTuple):
 
 
 def umeyama(x: Array, y: Array, *, with_scale: bool = False) -> Similarity:
-    r"""Compute the similarity that brings points closest to others.
+    r"""Compute the rigid motion or similarity that brings points closest to others.
 
     .. math::
         \min_{s, R, p} \sum_i |s R x_i + p - y_i|^2
@@ -51,7 +51,7 @@ def umeyama(x: Array, y: Array, *, with_scale: bool = False) -> Similarity:
     Args:
         x: Points to move, shape (n, d) [m].
         y: The points to come close to, shape (n, d) [m].
-        with_scale: Whether the scale is fitted; else it is 1, as where all x are one point.
+        with_scale: Whether the scale is fitted; else it is 1, and also where all x coincide.
 
     Returns:
         Scale, rotation and translation; of the rotations that are equally good, any.

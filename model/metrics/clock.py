@@ -20,8 +20,10 @@ FEWEST = 6  # least number of poses of a track
 BLOCKS = 5  # blocks of consecutive poses of the track that are left out in turn
 SHARE = 0.5  # of the track's poses and of its length that must lie within the path
 LARGEST_SD = 0.25  # s; a less certain estimate is refused
-AS_GOOD = 5.0  # times the least misfit: F of as many errors as there are blocks, two each, at 99 %
-NEAR = 7.0  # standard deviations within which such a misfit belongs to the same minimum
+# Ratio to the least misfit below which another offset fits as well: the 99 % quantile of F, with
+# two degrees of freedom for each block in numerator and denominator.
+AS_GOOD = 5.0
+NEAR = 7.0  # standard deviations from the best offset within which an offset is no rival
 
 
 @dataclass(frozen=True)
@@ -140,6 +142,10 @@ def _misfit(track: Poses, path: Poses, offset: float, *, way: Array | None = Non
 
 
 def _enough(inside: NDArray[np.bool_], way: Array | None) -> bool:
+    """Return whether `SHARE` of the poses and of the distance travelled `way` [m] are inside.
+
+    Without `way`, whether all poses are.
+    """
     if way is None:
         return bool(inside.all())
     return bool(inside.mean() >= SHARE and np.ptp(way[inside]) >= SHARE * way[-1])

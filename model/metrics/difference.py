@@ -59,6 +59,6 @@ def difference(first: Array, second: Array, *, rng: np.random.Generator) -> Path
     below = np.searchsorted(order, second, side="left")
     not_above = np.searchsorted(order, second, side="right")
     probability = float((below + not_above).mean() / (2 * len(first)))
-    apart = rng.choice(second, DRAWS) - rng.choice(first, DRAWS)
-    low, median, high = np.quantile(apart, [0.05, 0.5, 0.95])
+    drawn = rng.choice(second, DRAWS) - rng.choice(first, DRAWS)
+    low, median, high = np.quantile(drawn, [0.05, 0.5, 0.95])
     return PathDifference(float(median), float(low), float(high), probability)

@@ -30,6 +30,11 @@ def match_times(first: Array, second: Array, *, most: float) -> tuple[Indices, I
 
 
 def _nearest(sparse: Array, dense: Array, most: float) -> tuple[Indices, Indices]:
+    """Match sparse times with the nearest dense ones; return indices into sparse and into dense.
+
+    Pairs more than `most` apart are left out; a dense time is matched with the nearest of the
+    sparse times that would have it, the earlier of two.
+    """
     after = np.minimum(np.searchsorted(dense, sparse, side="right"), len(dense) - 1)
     before = np.maximum(after - 1, 0)
     gap_after, gap_before = np.abs(dense[after] - sparse), np.abs(dense[before] - sparse)

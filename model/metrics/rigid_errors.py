@@ -206,7 +206,10 @@ def rotation_angles(rotation: Array) -> Array:
 
 
 def _motions(path: RigidPath, start: Indices, end: Indices) -> tuple[Array, Array]:
-    """Return displacement and rotation from one pose to another, in the frame of the first."""
+    """Return shift (pairs, d) and rotation (pairs, d, d) of each pair, in its first pose's frame.
+
+    Raise `InsufficientData` if the path has no rotations.
+    """
     rotation = path.rotation
     if rotation is None:
         raise InsufficientData("a path has no rotations; motions in the frame of a pose need them")
@@ -221,6 +224,7 @@ def _motion_error(
     distance: float | None,
     pairs: tuple[Indices, Indices],
 ) -> MotionError:
+    """Summarise the relative errors of pairs; NaN without pairs or rotations."""
     if estimate.rotation is None or reference.rotation is None or len(pairs[0]) == 0:
         return MotionError(distance, len(pairs[0]), math.nan, math.nan)
     error, angle = motion_errors(estimate, reference, *pairs)
@@ -228,12 +232,14 @@ def _motion_error(
 
 
 def _rotation_error(estimate: RigidPath, reference: RigidPath) -> float:
+    """Compute the root mean square angle between rotations; NaN without rotations [rad]."""
     if estimate.rotation is None or reference.rotation is None:
         return math.nan
     return _rms(rotation_angles(np.swapaxes(reference.rotation, 1, 2) @ estimate.rotation))
 
 
 def _spread(difference: Array) -> Spread:
+    """Summarise the lengths of difference vectors, shape (n, d) [m]."""
     distance = np.linalg.norm(difference, axis=1)
     return Spread(
         _rms(distance), float(distance.mean()), float(np.median(distance)), float(distance.max())
@@ -241,4 +247,5 @@ def _spread(difference: Array) -> Spread:
 
 
 def _rms(values: Array) -> float:
+    """Compute the root mean square of all elements."""
     return float(np.sqrt(np.mean(values**2)))

@@ -54,14 +54,14 @@ def find_across(law, work, i):
 
 @inlined
 def effective_size(lateral, across, x, y, z):
-    """Compute the size of a slip that an isotropic law takes for it.
+    """Compute |s'|, the slip speed at which the isotropic law is evaluated [m/s].
 
     Args:
         lateral: b - 1 and (b / a)^2 - 1, shape (2,).
-        across: Direction across the rolling direction, shape (3,).
-        x: Slip along x, and so on.
-        y: Slip along y.
-        z: Slip along z.
+        across: Unit vector across the rolling direction, world frame, shape (3,).
+        x: x of the slip velocity along the ground, world frame [m/s].
+        y: y of the slip velocity [m/s].
+        z: z of the slip velocity [m/s].
     """
     square = x * x + y * y + z * z
     if lateral[1] != 0.0:
@@ -71,14 +71,14 @@ def effective_size(lateral, across, x, y, z):
 
 @inlined
 def sideways(lateral, across, vector):
-    """Compute (b - 1) times the part of a vector across the rolling direction.
+    """Compute (b - 1) times the component of a slip velocity across the rolling direction [m/s].
 
-    Traction is in proportion to the vector plus this number times `across`.
+    Traction is -G times the sum of the slip velocity and this number times `across`.
 
     Args:
         lateral: b - 1 and (b / a)^2 - 1, shape (2,).
-        across: Direction across the rolling direction, shape (3,).
-        vector: Slip velocity along the ground, shape (3,).
+        across: Unit vector across the rolling direction, world frame, shape (3,).
+        vector: Slip velocity along the ground, world frame, shape (3,) [m/s].
     """
     if lateral[0] == 0.0:
         return 0.0

@@ -104,7 +104,7 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
     if over_plane - reach > ground.highest * up + NEAR:
         return N_LEGS
     for i in range(8):
-        k = N_LEGS + i
+        k = N_LEGS + i  # the bits of i are the corner's signs: 0 for plus
         sx, sy, sz = 1.0 - 2 * (i & 1), 1.0 - (i & 2), 1.0 - (i & 4) / 2
         _to_world(R, sx * half[0], sy * half[1], sz * half[2], place[k])
         velocity[k, :] = 0.0

@@ -48,15 +48,15 @@ def is_level(ground: Ground) -> bool:
 
 
 def highest_near(ground: Ground, x: float, y: float, far: float) -> float:
-    """Return a height that no ground near a place is above [m].
+    """Return an upper bound on the height of the ground within a square about a place [m].
 
-    Where the distance goes beyond the grid, the grid's edge counts.
+    Where the square goes beyond the grid, the grid's edge counts.
 
     Args:
         ground: The ground.
         x: x of the place [m].
         y: y of the place [m].
-        far: Distance along x and y each [m].
+        far: Half the side of the square [m].
     """
     if is_level(ground):
         return float(ground.height[0, 0])

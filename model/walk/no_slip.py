@@ -10,7 +10,8 @@ r"""Kinematic walking models without slip, from leg angles and the legs' geometr
 with the body's velocity v and angular velocity omega, contact q_i from the body's centre, contact
 p_i and hip h_i in the body frame, leg speed theta_dot_i and the body's y axis e_y. Vertically three
 legs determine height, roll and pitch rate exactly. Horizontally two equations a leg for three
-unknowns cannot all hold when a robot turns, and are solved by least squares.
+unknowns cannot all hold when a robot turns. Least squares of the forward equations give forward
+velocity and yaw rate; those of the leftward equations, with that yaw rate, leftward velocity.
 
 `walk_wheels` is the predecessor's model, section 2-4: six wheels of radius 2r that do not steer.
 The text says 4r, but its hip speed is 2 r theta_dot, and with that its results follow.
@@ -237,6 +238,9 @@ def leg_velocities(hips, points, up, speed, own):
 @compiled
 def stand_still(seen, below, own, up, legs, contact, twist, slip):
     """Compute the body's twist that keeps contacts in place, by least squares, and their slip.
+
+    Forward velocity and yaw rate are fitted to the contacts' forward velocities alone, then
+    leftward velocity, with the yaw rate from before, to their leftward ones.
 
     Args:
         seen: Contact points from the body's centre, forward and left, shape (6, 2) [m].

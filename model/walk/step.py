@@ -93,9 +93,9 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
 
 @inlined
 def velocity_change(work):
-    """Return by how much a solve changed the velocity of the body and, by turning, of feet [m/s].
+    """Return by how much a solve changed the body's velocity and, by its turning, the feet's [m/s].
 
-    It is the root of the sum of both squares, which depends on no compass heading.
+    It is the root of the sum of the squares of both, which does not depend on the heading.
 
     Args:
         work: Arrays of the step with the solved velocities in `b`, those before in `v` and `w`.
@@ -152,7 +152,7 @@ def add_contact_forces(table, contacts, work, n, speed, dt):
         dt: Length of the step [s].
 
     Returns:
-        Sum over contacts of traction over slip velocity [N s/m].
+        Sum over contacts of the largest traction over slip velocity in any direction [N s/m].
     """
     k, c, held = contacts.stiffness, contact_damping(contacts, dt), 0.0
     v, w, force, point = work.v, work.w, work.force, work.point

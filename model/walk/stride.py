@@ -26,7 +26,8 @@ def strides_until_alike(strides: Iterable[Array], *, least_length: float) -> lis
     Args:
         strides: Strides one after the other: x, y, yaw, roll and pitch at the stride's start and
             after each of its n steps, shape (n + 1, 5) each [m, rad].
-        least_length: Length that is taken for a shorter stride [m].
+        least_length: Length to compare with instead if a stride is shorter, as one that turns on
+            the spot [m].
     """
     walked: list[Array] = []
     last = np.full(3, np.inf)

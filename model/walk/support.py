@@ -37,12 +37,14 @@ class Support:
 
 
 def support_of(path: WalkPath, stances: Intervals | None = None) -> Support:
-    """Count what holds the robot up in a walk.
+    """Compute the shares of a walk's samples in flight, on the body, and with loaded legs.
+
+    Of each leg also how much of its contact it slides, and of its stance it has no contact.
 
     Args:
-        path: The walk.
-        stances: Rows (start, end) of each leg's stance by its angles [s]; None if not known, as for
-            a log.
+        path: The walk, with samples equally spaced in time.
+        stances: For each leg, rows (start, end) of the stances by its angles, ends excluded, shape
+            (k, 2) [s]; None if not known, as for a log.
     """
     speed = np.linalg.norm(path.slip_velocity, axis=-1)
     slides = np.where(path.contact, speed, np.nan)
@@ -63,6 +65,9 @@ def support_of(path: WalkPath, stances: Intervals | None = None) -> Support:
 
 
 def _share(part: NDArray[np.bool_], whole: NDArray[np.bool_]) -> Array:
-    """Return the share of `whole` that `part` is, by leg; NaN where there is no whole, (6,) [-]."""
+    """Return, for each leg, the number of samples in `part` over that in `whole`, (6,) [-].
+
+    Both have shape (n, 6); NaN for a leg without a sample in `whole`.
+    """
     count = whole.sum(axis=0)
     return np.divide(part.sum(axis=0), count, out=np.full(N_LEGS, np.nan), where=count > 0)

@@ -110,8 +110,8 @@ def law_table(
     Loads are from 0.02 to 2 times the weight, one alone if traction is proportional to load. Slip
     ratios of the table are material ones from 0 to 10 000, |slip velocity| over the speed at which
     the leg's arc passes the contact; a law of another definition is evaluated at converted slip.
-    The table is odd: a law with driving and braking apart is tabulated by its middle curve. A leg
-    on its toe, which no rig has measured, has the law's traction at infinite slip.
+    The table is odd in slip: a `SidedLaw` is tabulated by its middle curve. A leg on its toe, which
+    no rig has measured, has the law's traction at infinite slip.
 
     Args:
         law: The slip law.
@@ -185,7 +185,7 @@ def _grid(curve_scale: float) -> tuple[float, Array]:
 def _converted(x: Array, definition: SlipDefinition) -> Array:
     """Convert material slips x >= 0, which may exceed 1, to another definition.
 
-    From 1 on the result is that of just below 1, or x itself if larger.
+    From x = 1 on the result is that of just below 1, or x itself if that is larger.
     """
     # A leg dragged sideways can slip faster than its arc passes: there the law is saturated.
     below_one = convert_slip(np.minimum(x, 1 - 1e-9), SlipDefinition.MATERIAL, definition)

@@ -86,7 +86,7 @@ def walk_detected(
 
 
 def _motion(robot: Robot, theta: Array, speed: Array, found: RigidContacts) -> tuple[Array, Array]:
-    """Compute twists, shape (n, 3), and slip, (n, 6, 2), of a body on given contacts: `_carry`."""
+    """Compute the body's twist (n, 3) and the contacts' slip (n, 6, 2); see `_carry`."""
     n = len(theta)
     twist, slip = np.zeros((n, 3)), np.zeros((n, N_LEGS, 2))
     _carry(
@@ -98,7 +98,9 @@ def _motion(robot: Robot, theta: Array, speed: Array, found: RigidContacts) -> t
 
 @compiled
 def _carry(hips, radius, toe_beyond, theta, speed, legs, contact, twist, slip):
-    """Compute the body's motion on given contacts without slip.
+    """Compute the twist of a body on given contacts, which stand still by least squares.
+
+    See `model.walk.no_slip.stand_still`.
 
     Args:
         hips: Hip positions in the body frame, shape (6, 3) [m].

@@ -133,7 +133,7 @@ def solve_inside(c, slopes, total, loads):
 
 @compiled
 def solve_on_edges(c, slopes, total, most, loads):
-    """Minimise |c + slopes f|^2 over three forces f of given sum, one of them at a bound.
+    """Minimise |c + slopes f|^2 over three forces f of given sum, at least one at a bound.
 
     Args:
         c: Constant terms, shape (2,) [rad/s2].
@@ -163,6 +163,8 @@ def solve_on_edges(c, slopes, total, most, loads):
 @compiled
 def normal_forces(balance, traction, total, most, loads):
     """Solve Eq. (4-22) for the normal forces of three legs by 60 Gauss-Newton rounds at most.
+
+    A round that leaves the bounds, or whose system is singular, takes the best point on an edge.
 
     Args:
         balance: Contacts and wanted accelerations; see `Balance`.

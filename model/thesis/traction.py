@@ -36,6 +36,7 @@ class Traction(NamedTuple):
     table: TractionTable
 
 
+# Beside exact coefficients the table is never looked up; `by_velocity` is read all the same.
 _NO_TABLE = VelocityCoulomb(1.0).table(weight=1.0)._replace(by_velocity=False)
 
 THESIS_TRACTION = Traction(True, 34.34, 1.564, 0.3798, 0.0066, _NO_TABLE)  # Listing A.20
@@ -113,11 +114,11 @@ def magic_force(traction, kappa, load):
 
 @compiled
 def traction_force(traction, kappa, load):
-    """Compute the traction force of a leg by Magic Formula or table [N]; zero without load.
+    """Compute the traction force of a leg; it has the sign of kappa, and is zero without load [N].
 
     Args:
-        traction: The slip law.
-        kappa: Slip ratio, or slip velocity over the table's `speed_scale` [-].
+        traction: The slip law: the Magic Formula with its coefficients if `exact`, else its table.
+        kappa: Slip ratio, or slip velocity over `speed_scale` if the table is `by_velocity` [-].
         load: Normal force [N].
     """
     if load <= 0.0:
@@ -133,7 +134,7 @@ def load_derivative(traction, kappa, load, force):
 
     Args:
         traction: The slip law.
-        kappa: Slip ratio, or slip velocity over the table's `speed_scale` [-].
+        kappa: Slip ratio, or slip velocity over `speed_scale` if the table is `by_velocity` [-].
         load: Normal force [N].
         force: `traction_force` at this load [N].
     """

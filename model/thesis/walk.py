@@ -24,8 +24,8 @@ from model.walk.dynamics import step_times
 
 TRIPODS = ((0, 3, 4), (1, 2, 5))
 SAME_SIDE = ((0, 4), (1, 5))  # legs of one tripod on one side, which turn alike
-APART = np.radians(45.0)  # where these legs are further apart, the gait is not a tripod [rad]
-_LOOKS = 721  # instants of a cycle at which a gait is looked at
+APART = np.radians(45.0)  # largest angle between these legs in a tripod gait [rad]
+_LOOKS = 721  # instants of a cycle at which leg angles are compared: every half degree
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,10 @@ def _machine(robot: Robot) -> Machine:
 
 
 def is_tripod(gait: CyclicReference) -> bool:
-    """Return whether a gait is one that the thesis's dynamics walks: a tripod, {1,4,5} and {2,3,6}.
+    """Return whether the thesis's dynamics can walk a gait: one of tripods {1,4,5} and {2,3,6}.
+
+    Only legs of one tripod and side are compared, 1 with 5 and 2 with 6: they must stay within
+    `APART` of each other, modulo a turn.
 
     Args:
         gait: Gait of six legs.
@@ -133,7 +136,7 @@ def is_tripod(gait: CyclicReference) -> bool:
 
 
 def _apart(theta: Array, pair: tuple[int, int]) -> Array:
-    """Compute by what angle two legs are apart, modulo a turn, shape (n,) [rad]."""
+    """Compute the absolute angle between two legs, up to half a turn, shape (n,) [rad]."""
     return np.abs(wrap_angle(theta[:, pair[0]] - theta[:, pair[1]]))
 
 

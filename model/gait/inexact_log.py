@@ -62,9 +62,9 @@ class LegLines:
         earliest: Least index of each line's first sample, where the fewest lines that pass all
             samples are as early as they can be, then the number of samples, shape (k + 1,).
         latest: Largest such index, where lines are as late as they can be, shape (k + 1,).
-        lines: All lines that pass each line's own samples, within what a leg is off a line; where
-            the angles have noise those about as far from that of least squares as it may be off.
-        mean: Mean of those that pass them exactly.
+        lines: For each line, all that pass its own samples, within what a leg may be off a straight
+            line; of noisy angles those as far about that of least squares as its error allows.
+        mean: Mean of those that pass within half a count; of noisy angles, of `lines`.
         alike: Number that lines share whose samples repeat: the same counts after the same times,
             from 0, shape (k,).
         step: Angle of one count, or twice what a sample's noise may be [rad].
@@ -86,8 +86,8 @@ class LegLines:
             t: Times of the samples, shape (n,) [s].
             theta: Angles; if counted, the middles of their bins, shape (n,) [rad].
             step: Angle of one count; not used if there is noise [rad].
-            noise: Standard deviation of the angles' noise, in which counts are not seen; zero for
-                counts without noise [rad].
+            noise: Standard deviation of the angles' noise, if it hides the counts; zero for counts
+                without noise [rad].
         """
         step = 2 * REACH * noise if noise else step
         changes = np.abs(np.diff(theta)) > SAME
@@ -233,7 +233,8 @@ def _lines(
 ) -> Passing:
     """Return all lines that pass each group of samples, from indices `begin` to below `end`.
 
-    A line passes a sample within half a count, or within as much as one line can, and `off` [rad].
+    A line passes if no sample is further off than half a count `step`, or than the closest line is
+    if that is more, plus `off` [rad].
     """
     away = [closest(samples, *group)[1] for group in zip(begin, end, strict=True)]
     return passing(samples, begin, end, np.maximum(0.5 * step, away) + off)
@@ -244,8 +245,8 @@ def _likely_lines(
 ) -> Passing:
     """Return lines about that of least squares through each group of samples, evenly distributed.
 
-    They have the standard deviations of angle and speed that the noise [rad] leaves, and leave a
-    leg what it may be off a straight line.
+    Angle and speed have the standard deviations that the noise [rad] leaves, hence the sqrt(3) of
+    a uniform distribution; `YIELD` is added, by which a leg may be off a straight line.
     """
     k = len(begin)
     x, angle, speed = np.empty(k), np.empty((k, 2)), np.empty((k, 2))

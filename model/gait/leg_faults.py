@@ -83,9 +83,10 @@ def leg_faults(motion: LegMotion) -> list[LegFault]:
 
 
 def _mirrored(motion: LegMotion) -> Legs:
-    """Return which legs have the other sign: they stand straight up and turn backwards.
+    """Return which legs are measured with the wrong sign: they stand straight up, turn backwards.
 
-    Backwards against the legs of their side that stand straight down, if there are such.
+    Within `_FARTHEST` of straight up. Backwards is against most legs of their side that stand
+    straight down, or where no such leg turns, with falling angle.
     """
     up = np.abs(_wrapped(motion.centre + _DOWN)) <= _FARTHEST
     down = np.abs(_wrapped(motion.centre - _DOWN)) <= _FARTHEST
@@ -94,9 +95,12 @@ def _mirrored(motion: LegMotion) -> Legs:
 
 
 def _zero_fault(motion: LegMotion, mirrored: Legs) -> ZeroFault | None:
-    """Return the legs with another zero: with signs of legs that walk forward, or as they are.
+    """Return the legs whose middle of stance is further than `_FARTHEST` from straight down.
 
-    Of the two the one with fewer wrong legs, then with more equal zeros, then the former.
+    Their signs are unknown: either every leg that turns backwards is reversed, or only those of
+    `mirrored`. The choice is that which leaves fewer such legs; of equal ones, that whose legs have
+    more nearly the same offset (to 0.01 of the length of the mean phasor); else the first. None
+    without such a leg, or where a sharp turn explains them.
     """
     judged = _judged(motion)
     if not judged.any():
@@ -124,18 +128,21 @@ def _may_be_a_turn(offset: Array, far: Legs) -> bool:
 
 
 def _usual_direction(direction: Array) -> Array:
-    """Return for each leg the direction of most legs of its side, 0 without one, shape (6,)."""
+    """Return for each leg the direction of most legs of its side, 0 if equally many, shape (6,)."""
     sums = np.array([direction[side == SIDE].sum() for side in (0, 1)])
     return np.sign(sums)[SIDE]
 
 
 def _judged(motion: LegMotion) -> Legs:
+    """Return which legs turn far enough, and unevenly enough, to know their middle of stance."""
     return motion.turning & (motion.weight >= CLEAR)
 
 
 def _numbers(legs: Legs) -> tuple[int, ...]:
+    """Return the numbers, from 1, of the legs in a mask."""
     return tuple(int(leg) + 1 for leg in np.nonzero(legs)[0])
 
 
 def _wrapped(angle: Array) -> Array:
+    """Wrap angles into [-pi, pi) [rad]."""
     return (angle + np.pi) % (2 * np.pi) - np.pi

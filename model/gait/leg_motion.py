@@ -21,7 +21,7 @@ FEWEST: Final = 1.0
 """Least rotation that is judged [turns]."""
 CLEAR: Final = 0.2
 """Least `weight` with which a centre of stance is known; a tripod's is about 0.35 [-]."""
-_AS_ONE: Final = 0.8  # length of the legs' mean phase from which they set the pace as one leg
+_AS_ONE: Final = 0.8  # length of the mean of exp(i phase) above which all legs step at once
 _STEADY: Final = 0.8  # share of a leg's travel that must be in one direction
 _STILL: Final = 0.2  # share of the typical pace below which the robot stands
 _ENOUGH: Final = np.radians(6)  # mean rotation between samples that exceeds steps of an encoder
@@ -78,7 +78,12 @@ def leg_motion(theta: Array) -> LegMotion | None:
 
 
 def _by_pace(theta: Array) -> Array:
-    """Return leg angles at equal steps of the legs' mean rotation, without rows at rest."""
+    """Resample leg angles at steps `PACE` of the legs' mean rotation, without rows at rest.
+
+    Samples are thinned out, by factors of two, until the typical rotation between them exceeds
+    `_ENOUGH`; at rest are those that rotate by less than `_STILL` of it. No rows are returned
+    where nothing moves, or fewer than three samples are left.
+    """
     every, typical, rows, steps = 1, 0.0, theta, np.zeros(0)
     while typical < _ENOUGH:
         rows = theta[::every]

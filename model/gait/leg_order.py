@@ -31,11 +31,12 @@ ORDERS: Final[dict[tuple[int, ...], str]] = {
 """Orders in which robots' software lists legs, seen from above: the leg of each place."""
 SIDE: Final = np.arange(N_LEGS) % 2
 """Side of each leg, 0 left and 1 right."""
-_IRREGULAR, _REGULAR = 0.91, 0.96  # `regularity` of a wrong and of a right order
+# Least `regularity` of an order that is not suspected, and of one that is suggested instead.
+_IRREGULAR, _REGULAR = 0.91, 0.96
 _TURN: Final = 0.5  # least `_sides_differ` in a turn
 _TOGETHER: Final = 0.12  # largest difference of phase of legs that step together [cycles]
 _CONSTANT: Final = 0.8  # least coherence of a gait
-_GRID: Final = np.arange(48) / 48
+_GRID: Final = np.arange(48) / 48  # lags from row to row that `regularity` tries [cycles]
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,11 @@ def regularity(phase: Array) -> float:
 
 
 def _consistent_orders(motion: LegMotion, direction: Array) -> tuple[tuple[int, ...], ...]:
-    """Return the usual orders that make the gait plausible, else the one that moves fewest legs."""
+    """Return the orders of `ORDERS` that make the gait plausible, else one that moves few legs.
+
+    Where the sweeps of the two sides differ clearly, as in a turn, only those orders are returned
+    whose `_sides_differ` is at least half the largest. Empty if no order is plausible.
+    """
 
     def consistent(order: tuple[int, ...]) -> bool:
         phase, turned = (_by_leg(order, values) for values in (motion.phase, direction))
@@ -109,6 +114,7 @@ def _consistent_orders(motion: LegMotion, direction: Array) -> tuple[tuple[int, 
 
 
 def _by_moved_legs() -> Iterator[tuple[int, ...]]:
+    """Yield orders of the six legs: first those that exchange two, then all permutations."""
     legs = range(1, N_LEGS + 1)
     for first, second in combinations(legs, 2):
         swap = {first: second, second: first}
@@ -117,19 +123,25 @@ def _by_moved_legs() -> Iterator[tuple[int, ...]]:
 
 
 def _by_leg(order: tuple[int, ...], values: Array) -> Array:
+    """Sort values, one for each place of an order (the number of its leg), by leg, shape (6,)."""
     return values[np.argsort(order)]
 
 
 def _sides_differ(weight: Array) -> float:
     """Return how clearly the sweeps of the two sides differ, as they do in a turn, from 0 to 1.
 
-    The variance of the weights between the sides over that of all.
+    It is the variance of `LegMotion.weight` between the sides over its variance among all legs.
     """
     between = (weight[SIDE == 0].mean() - weight[SIDE == 1].mean()) ** 2 / 4
     return float(between / max(weight.var(), 1e-4))
 
 
 def _plausible(phase: Array, direction: Array, least: float) -> bool:
+    """Return whether phases and directions by leg are those of a walking robot.
+
+    The legs of a side must not turn opposite ways, nor all step at once while the other side
+    stands, and `regularity` must be `least` or more.
+    """
     for side in (0, 1):
         turned = direction[side == SIDE]
         if turned.max() > 0 > turned.min():
@@ -138,7 +150,10 @@ def _plausible(phase: Array, direction: Array, least: float) -> bool:
 
 
 def _sides_alternate(phase: Array) -> bool:
-    """Return whether each side steps at once, at another time than the other side."""
+    """Return whether the legs of each side step together, at another time than the other side's.
+
+    Together is within about `_TOGETHER` of their mean phase, another time by more than that.
+    """
     turned = np.exp(2j * np.pi * phase)
     means = [turned[side == SIDE].mean() for side in (0, 1)]
     apart = abs(np.angle(means[0] * np.conj(means[1]))) / (2 * np.pi)
@@ -146,6 +161,7 @@ def _sides_alternate(phase: Array) -> bool:
 
 
 def _groups(phase: Array) -> tuple[tuple[int, ...], ...]:
+    """Group the numbers of legs whose phase is within `_TOGETHER` of their group's first leg."""
     groups: list[list[int]] = []
     for leg, at in enumerate(phase):
         for group in groups:

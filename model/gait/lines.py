@@ -84,9 +84,9 @@ def split(samples: Samples, half: float) -> NDArray[np.intp]:
 
 @compiled
 def _reach(samples, start, half):
-    """Return the index of the first sample that no line through all from `start` on passes.
+    """Return the end of the longest group of samples from `start` on that one line passes.
 
-    The number of samples if there is none.
+    That is the index of the first sample beyond it, found by doubling the group, then bisection.
     """
     n = len(samples.t)
     passed, failed = start + 1, n + 1  # a line passes up to the first, none up to the second
@@ -103,7 +103,10 @@ def _reach(samples, start, half):
 
 @compiled
 def _slope(samples, start, end, half, m):
-    """Return whether a line passes all samples, and the last slope tried, beginning with m."""
+    """Search a slope, by bisection from m on, of a line within `half` of samples start to end - 1.
+
+    Return whether there is one, and the last slope tried [rad/s].
+    """
     low, high = -FASTEST, FASTEST
     for attempt in range(HALVINGS):
         m = m if attempt == 0 else 0.5 * (low + high)
@@ -116,10 +119,11 @@ def _slope(samples, start, end, half, m):
 
 @compiled
 def _range(samples, begin, end, half, m):
-    """Return least and largest angle, at the first sample, of the lines of slope m that pass.
+    """Return least and largest angle, at sample `begin`, of lines of slope m that pass a group.
 
-    No line passes if the least is above the largest. The third value is the derivative of least
-    minus largest by the slope, a convex function of it.
+    They lie within `half` of the samples begin to end - 1. No line passes if the least angle is
+    above the largest. The third value is the derivative of least minus largest by the slope; the
+    difference is convex in the slope, so that bisection by this sign finds its minimum.
     """
     floor, ceiling = -np.inf, np.inf
     floor_t, ceiling_t = 0.0, 0.0
@@ -193,7 +197,10 @@ def passing(
 
 @compiled
 def _last(samples, begin, end, half, inside, outside):
-    """Return the speed closest to `outside` of a line that passes; lines of `inside` do."""
+    """Return the speed closest to `outside` of a line that passes the group, by bisection.
+
+    A line of the speed `inside` must pass; `half` is as for `_range`.
+    """
     for attempt in range(HALVINGS):
         m = outside if attempt == 0 else 0.5 * (inside + outside)
         floor, ceiling, _ = _range(samples, begin, end, half, m)
@@ -212,7 +219,7 @@ def middle(lines: Passing) -> Lines:
     k = len(lines.x)
     found = Lines(lines.x, np.empty(k), np.empty(k))
     for i in range(k):
-        weight = lines.high[i] - lines.low[i] + 1e-12  # of a single line, too
+        weight = lines.high[i] - lines.low[i] + 1e-12  # not all zero where only one line passes
         weight /= weight.sum()
         found.angle[i] = (weight * 0.5 * (lines.low[i] + lines.high[i])).sum()
         found.speed[i] = (weight * lines.speed[i]).sum()
@@ -279,11 +286,12 @@ def knots(
 
 @compiled
 def _junction(samples, earliest, latest, lines, i, rest, half, found, n):
-    """Add the knots between line i and the next to `found`; return the number of knots so far.
+    """Add the knots between line i and the next to the n in `found`; return their new number.
 
-    The lines' intersection, if it lies between the last sample that is certainly of line i and the
-    first that is certainly of the next. Else both lines end beside the first sample that line i
-    does not pass: at the ends of a plateau, if both reach it in time, or at the samples themselves.
+    It is the lines' intersection, if that lies between the last sample that is certainly of line i
+    and the first that is certainly of the next. Else both lines end beside the first sample that
+    line i does not pass: at the ends of a plateau, if both reach it in time, or at the samples
+    before and after. Arguments are those of `knots`, with the next line's earliest and latest.
     """
     if lines.speed[i] != lines.speed[i + 1]:
         apart = _at(lines, i + 1, lines.x[i]) - lines.angle[i]
@@ -304,7 +312,10 @@ def _junction(samples, earliest, latest, lines, i, rest, half, found, n):
 
 @compiled
 def _add(found, n, t, angle):
-    """Write a knot to column n of `found`; return n + 1."""
+    """Append a knot to the n knots in `found`, rows of times [s] and angles [rad].
+
+    It is written to column n, which must exist; n + 1, the number of knots now, is returned.
+    """
     found[0, n], found[1, n] = t, angle
     return n + 1
 

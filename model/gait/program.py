@@ -197,6 +197,7 @@ class ProgramLegs:
 
     @property
     def _down(self) -> float:
+        """When all legs are down after the last cycle [s]."""
         return self.cycles[-1].down
 
     def with_cycle(self, gait: CycleGait) -> "ProgramLegs":

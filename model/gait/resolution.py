@@ -55,13 +55,20 @@ def find_noise(t: Array, theta: Array, step: float = 0.0) -> Array | None:
 
 
 def _held(theta: Array) -> bool:
-    """Tell whether all legs repeat their angles again and again between changes."""
+    """Return whether angles come less often than the log is written.
+
+    Then all legs repeat theirs: at more than `HELD` of the samples a repetition begins.
+    """
     still = ~np.any(np.diff(theta, axis=0), axis=1)
     return bool((still[1:] & ~still[:-1]).mean() > HELD)
 
 
 def _size(t: Array, theta: Array, order: int) -> Array:
-    """Return the noise's standard deviation by the median of divided differences, (legs,) [rad]."""
+    """Estimate each leg's noise from its divided differences of one order, shape (legs,) [rad].
+
+    Each is scaled to have the noise's standard deviation, which is then the median of their sizes
+    over `MEDIAN`; they vanish where the motion is a polynomial of lower degree.
+    """
     near = np.lib.stride_tricks.sliding_window_view(t, order + 1)
     near = (near - near[:, :1]) / (near[:, -1:] - near[:, :1])
     apart = near[:, :, None] - near[:, None, :] + np.eye(order + 1)
@@ -94,23 +101,28 @@ def find_step(theta: Array) -> float | None:
     more = np.abs(change[1:-1] - change[:-2])
     alone = np.abs(change[2:] - change[:-2]) < 0.2 * more
     for least in UNCHANGED:
-        ones = more[alone & (more > least)]
-        step = _common_step(ones, np.abs(change)) if len(ones) >= FEWEST_CHANGES else None
+        single = more[alone & (more > least)]
+        step = _common_step(single, np.abs(change)) if len(single) >= FEWEST_CHANGES else None
         if step is not None and SMALLEST_STEP < step < LARGEST_STEP:
             return step
     return None
 
 
-def _common_step(ones: Array, change: Array) -> float | None:
-    """Return the step that most of `ones` are, if nearly all changes are its multiples [rad]."""
-    step = float(np.median(ones))
+def _common_step(single: Array, change: Array) -> float | None:
+    """Fit the step of which changes are whole multiples; None if 2 % of them or more are not [rad].
+
+    Args:
+        single: Changes that should be of one count, from whose median the fit starts [rad].
+        change: All changes from sample to sample, without their sign [rad].
+    """
+    step = float(np.median(single))
     for most in (1.5, 10.5, MOST_COUNTS):  # counts, of which the step is known ever better
         few = change[(0.5 * step < change) & (change < most * step)]
-        few = np.append(few, ones[ones < 1.5 * step])
+        few = np.append(few, single[single < 1.5 * step])
         counts = np.maximum((few / step).round(), 1.0)
         step = float(few @ counts / (counts @ counts))
     counts = change[change < MOST_COUNTS * step] / step
-    counts = np.append(counts[counts > 0.1], ones / step)
+    counts = np.append(counts[counts > 0.1], single / step)
     whole = np.abs(counts - counts.round()) < np.clip(0.02 * counts, 0.05, 0.1)
     # Almost no difference of a leg that turns freely would be a multiple of another.
     return step if whole.mean() > 0.98 else None

@@ -80,7 +80,7 @@ class SmoothedLeg:
         both = np.column_stack([self.theta - line, signs])
 
         def fitted(stiffness: float) -> tuple[float, Fit]:
-            """Return the error of cross-validation, and the fit."""
+            """Return the error of generalised cross-validation (up to a factor), and the fit."""
             factor = self._factor(stiffness)
             smooth = cho_solve_banded((factor, False), both)
             squares = float(np.sum((both - smooth)[:, 0] ** 2))
@@ -102,7 +102,7 @@ class SmoothedLeg:
 
     @cached_property
     def _penalty(self) -> Array:
-        """Diagonal of the penalty's matrix, last, and the two above it, shape (3, n)."""
+        """Matrix of the penalty, sum (change of slope)^2 / h, in scipy's upper bands (3, n)."""
         before, after = 1 / self._apart[:-1], 1 / self._apart[1:]
         rows = np.array([before, -before - after, after]) / np.sqrt(self._near)
         bands = np.zeros((3, len(self.t)))
@@ -112,7 +112,7 @@ class SmoothedLeg:
         return bands
 
     def _factor(self, stiffness: float) -> Array:
-        """Return the Cholesky factor of one plus the penalty, shape (3, n)."""
+        """Return the upper Cholesky factor of I + stiffness * penalty, in bands (3, n)."""
         bands = stiffness * self._penalty
         bands[2] += 1.0
         return cholesky_banded(bands)

@@ -200,10 +200,10 @@ def touchdown_of_stance(stance: float, *, leg_arc: float = np.pi) -> float:
 def scaled_stance(
     touchdown: float, liftoff: float, share: float, leg_arc: float
 ) -> tuple[float, float]:
-    """Return touchdown and lift-off angles of a share of a stance [rad].
+    """Return touchdown and lift-off angles of a shorter stance, a share of the given one [rad].
 
-    They differ from those of equal hip height by the share of the whole stance's difference: at 1
-    they are the given ones, at 0 both are that of the highest hip.
+    They are those of equal hip height, both turned by the share of how far the given stance is
+    turned from equal hip height: at 1 the given ones, at 0 both the angle of the highest hip.
 
     Args:
         touchdown: Touchdown angle of the whole stance [rad].

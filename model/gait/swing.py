@@ -71,7 +71,10 @@ def landing_angles(
 
 
 def _rising_angle(height: float, leg_arc: float) -> float:
-    """Return the angle before the highest hip's at which the hip has a height over radius [rad]."""
+    """Return the leg angle, before that of the highest hip, at which the hip has a height [rad].
+
+    `height` is over the leg's radius. Found by bisection; the end of the range if out of reach.
+    """
     low, high = -np.pi / 2 + 1e-9, highest_hip(leg_arc) - 1e-9
     for _ in range(_HALVINGS):
         middle = (low + high) / 2

@@ -53,7 +53,9 @@ class JointCovariance:
 
     @classmethod
     def independent(cls, covariance: Array) -> "JointCovariance":
-        """Build the joint covariance of poses without shared errors.
+        """Build the joint covariance of poses whose errors are independent of each other's.
+
+        There are no shared errors, q = 0, and the covariance of successive poses is zero.
 
         Args:
             covariance: Covariance of x, y and yaw of each pose, shape (n, 3, 3).
@@ -110,8 +112,8 @@ class JointCovariance:
         """Add one more error that all poses share, independent of the others.
 
         Args:
-            by_error: Derivative of x, y and yaw of each pose by it, shape (n, 3).
-            variance: Its variance.
+            by_error: Derivative of x, y and yaw of each pose by the new error, shape (n, 3).
+            variance: Variance of the new error.
         """
         q = len(self.errors)
         errors = np.zeros((q + 1, q + 1))
@@ -141,7 +143,11 @@ class JointCovariance:
 
 
 def _root(covariance: Array) -> Array:
-    """Compute A with A A' = `covariance`, which may be singular, in units of its diagonal."""
+    """Compute a matrix root A, A A^T = `covariance`, which may be singular, by eigenvalues.
+
+    The matrix is first scaled to unit diagonal, since its units differ; eigenvalues that rounding
+    made negative count as zero.
+    """
     sd = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     unit = np.where(sd > 0, sd, 1.0)
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))

@@ -15,7 +15,7 @@ _LISTED: Final = 15  # names a message lists before it says how many more there 
 def similar_name(name: str, known: Collection[str]) -> str | None:
     """Return the known name that a misspelt one most likely means; None if there is none.
 
-    These are, in this order: a name that differs in upper and lower case, blanks, hyphens and
+    Looked for are, in this order: a name that differs in upper and lower case, blanks, hyphens and
     underscores alone; the most similar by `difflib`; one that begins with the three or more letters
     given. A name with another number is another name.
 
@@ -59,8 +59,10 @@ def nearest(name: str, known: Collection[str]) -> str:
 
 
 def _folded(name: str) -> str:
+    """Return a name in lower case, without blanks, hyphens and underscores."""
     return re.sub(r"[\s_-]+", "", name.casefold())
 
 
 def _numbers(name: str) -> list[str]:
+    """Return all numbers in a name, as text, in their order."""
     return re.findall(r"\d+", name)

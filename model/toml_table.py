@@ -40,6 +40,7 @@ def parse_toml(data: bytes) -> dict[str, Any]:
 
 
 def _require_64_bits(value: object, key: str = "") -> None:
+    """Raise `ValueError` if a value, or one nested in it, is an integer of more than 64 bits."""
     if isinstance(value, int) and value.bit_length() > 64:  # TOML has no larger ones
         raise ValueError(f"{key} is a whole number of more than 64 bits; expected a smaller one")
     items = value.items() if isinstance(value, dict) else ()
@@ -309,12 +310,14 @@ class TomlTable:
             table.finish()
 
     def _list(self, key: str, count: int) -> list[Any]:
+        """Read a required list of `count` values of any type."""
         value = self.value(key)
         if not isinstance(value, list) or len(value) != count:
             raise self.fault(f"found {value!r}; expected a list of {count} numbers", key)
         return value
 
     def _finite(self, value: Any, key: str) -> float:
+        """Convert a value of the key to a float; anything but a finite number is an error."""
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if is_number and abs(value) <= sys.float_info.max:
             return float(value)
@@ -322,6 +325,7 @@ class TomlTable:
 
     @staticmethod
     def _even(table: "TomlTable") -> tuple[float, ...]:
+        """Return the equidistant numbers that a table of `series` describes, ends included."""
         count = table.whole("count", least=2, most=LONGEST)
         first, last = table.number("first"), table.number("last")
         step = (last - first) / (count - 1)

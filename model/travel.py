@@ -34,9 +34,12 @@ _NOISES = 30.0  # chord in standard deviations of the noise
 _PARTS = 50  # of the extent; smaller moves, as noise that hangs together in time, are no travel
 _WINDOW = 5  # poses through which a cubic would pass without noise
 _WIDE = 9  # the same of a polynomial of seventh order, from about five poses a turn on
-_CLEAR_OF_NOISE = 10.0  # distance of neighbours in what lies across, which adds a hundredth then
-_MOVING = 2.0  # the same in the noise: neighbours in noise alone are 1.7 standard deviations apart
-_CLEAR = np.radians(20.0)  # turn of a path of which neither noise nor sway leave the side open
+# Usual distance of neighbours from which poses are far apart: in standard deviations of what lies
+# across the way, which then lengthens lines by a hundredth; and in those of all noise, which alone
+# puts neighbours 1.7 apart.
+_CLEAR_OF_NOISE = 10.0
+_MOVING = 2.0
+_CLEAR = np.radians(20.0)  # least turn of a path whose side neither noise nor sway can reverse
 _ALIKE = 3.0  # ratio of the curvatures of two paths that may be mirror images
 _RAYLEIGH = np.sqrt(2 * np.log(2))  # median length of a vector of two standard normal numbers
 _HALF_NORMAL = 0.6745  # median size of a standard normal number
@@ -165,7 +168,10 @@ def turn_oppositely(first: Poses, second: Poses) -> bool:
 
 
 def _noise_chord(poses: Poses) -> float:
-    """Return the chord that noise asks for: half the usual distance where poses are far apart."""
+    """Compute the chord that noise requires: 30 standard deviations, or less for sparse poses [m].
+
+    Where poses are far apart (see the module), half the usual distance is enough. 0 without noise.
+    """
     noise = position_noise(poses)
     if noise == 0:
         return 0.0
@@ -201,8 +207,9 @@ def _differences(poses: Poses, window: int) -> Array:
 def _counted(poses: Poses, chord: float) -> NDArray[np.intp]:
     """Return the indices of the poses that count, the first and the last among them.
 
-    The last pose takes the place of the one that counted last if it is within the chord of it, so
-    that a robot that stands at the end adds no line of noise.
+    A pose counts if it is a chord [m] or more from the last one that counted; with a chord of zero,
+    if it is in another place. The last pose takes the place of the one that counted last if it is
+    within the chord of it, so that a robot that stands at the end adds no line of noise.
     """
     places = (poses.position[:, 0] + 1j * poses.position[:, 1]).tolist()
     counted, corner = [0], places[0]

@@ -132,11 +132,16 @@ def _thesis(run: ModelRun) -> WalkPath:
 
 
 def decides_contact(run: ModelRun, model: str) -> str:
-    """Name what decides contact in a model: "force", "rest" or the rule of the thesis's model.
+    """Name what decides contact in a model.
 
     Args:
         run: Inputs of the model.
-        model: Name of the model. "rest": legs on which the robot rests, as in models without slip.
+        model: Name of the model.
+
+    Returns:
+        "force" of the model "dynamics"; "rest", the legs on which the robot rests, of models
+        without slip; of the thesis's model the rule of the run, or "events", the detection at
+        touchdowns, where it walks by kinematics.
     """
     if model == "thesis":
         return "events" if is_kinematic(model, run.reference) else run.rule
@@ -144,7 +149,9 @@ def decides_contact(run: ModelRun, model: str) -> str:
 
 
 def is_kinematic(model: str, reference: LegReference) -> bool:
-    """Return whether a model with slip walks leg angles by kinematics, without: the thesis's.
+    """Return whether a model that has slip walks these leg angles by kinematics, without slip.
+
+    Only the thesis's model does so, with a cyclic gait that is no tripod.
 
     Args:
         model: Name of the model.

@@ -94,7 +94,8 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
     """Guess which column of a table holds each canonical column of a kind, by canonical name.
 
     Columns are matched by their headers, each at most once. Of several matches the header that is
-    the canonical name is taken, else the first in the table. Those without a match are omitted.
+    the canonical name is taken, else the first in the table that is not in `WEAK`, else the first.
+    Canonical columns without a match are omitted.
 
     Args:
         table: The table.
@@ -102,20 +103,27 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
     """
     guesses: dict[str, ColumnGuess] = {}
     taken: set[str] = set()
-    first = min((leg[0] for name in table.columns if (leg := leg_of(name))), default=1)
+    lowest_leg = min((leg[0] for name in table.columns if (leg := leg_of(name))), default=1)
     shared = (*_EVERYBODYS, *QUATERNION)
     ours = any(name in UNITS[kind] and name not in shared for name in table.columns)
     for canonical in UNITS[kind]:
-        fitting = [n for n in table.columns if n not in taken and _fits(n, canonical, kind, first)]
+        fitting = [
+            name for name in table.columns
+            if name not in taken and _fits(name, canonical, kind, lowest_leg)
+        ]  # fmt: skip
         fitting.sort(key=lambda name: (not is_canonical(name, canonical), _is_weak(name)))
         if fitting:
             guesses[canonical] = _guess(table, canonical, kind, fitting, ours=ours)
             taken.update((fitting[0], guesses[canonical].nanoseconds or fitting[0]))
-    return _of_one_mind(_in_multiples_of_g(table, _with_axes(_whole_quaternion(guesses))))
+    return _in_one_angle_unit(_in_multiples_of_g(table, _with_axes(_whole_quaternion(guesses))))
 
 
 def _in_multiples_of_g(table: RawTable, guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
-    """Return the guesses with g for a specific force that averages 1 without a stated unit."""
+    """Return the guesses with the unit g for the specific force where its numbers suggest it.
+
+    That is where all three components have numbers, none a stated unit, and the median of the
+    vector's length is about 1 by `is_in_g`.
+    """
     forces = {name: guesses[name] for name in _FORCES if name in guesses}
     numbers = [numbers_or_none(table, guess.name) for guess in forces.values()]
     found = [values for values in numbers if values is not None]
@@ -129,14 +137,20 @@ def _in_multiples_of_g(table: RawTable, guesses: dict[str, ColumnGuess]) -> dict
 
 
 def _whole_quaternion(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
-    """Return the guesses without a part of a quaternion, which are angles about the axes."""
+    """Return the guesses without `qw` to `qz` unless all four of them were found.
+
+    Three headers such as `rot_x`, `rot_y` and `rot_z` are angles about the axes instead.
+    """
     if set(QUATERNION) <= guesses.keys():
         return guesses
     return {name: guess for name, guess in guesses.items() if name not in QUATERNION}
 
 
 def _with_axes(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
-    """Return the guesses with a doubt of the axes of a path in space: y may be up."""
+    """Add to `x_m`, `y_m` and `z_m` the doubt which axis is up, where a track has all three axes.
+
+    Canonical headers and those of ROS, EuRoC and TUM, which have z up, are not doubted.
+    """
     doubt = "the file does not say which axis is up; if not z, give import --track the --plane"
     for canonical in ("x_m", "y_m", "z_m") if "z_m" in guesses else ():
         guess = guesses.get(canonical)
@@ -148,8 +162,8 @@ def _with_axes(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
     return guesses
 
 
-def _of_one_mind(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
-    """Return the guesses with degrees for all angles whose unit is in doubt, if one has degrees."""
+def _in_one_angle_unit(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
+    """Set degrees for every angle with a doubtful unit, if one of them was guessed in degrees."""
     angles = {
         canonical: guess for canonical, guess in guesses.items()
         if guess.unit and guess.unit.doubt and guess.unit.unit in ("rad", "deg")
@@ -180,11 +194,16 @@ def numbers_or_none(table: RawTable, name: str) -> Array | None:
 
 
 def is_canonical(header: str, canonical: str) -> bool:
-    """Return whether a header is a canonical name, of a track also the short one."""
+    """Return whether a header is a canonical name or its short form, such as `x` for `x_m`."""
     return header in (canonical, _SHORT.get(canonical))
 
 
 def _is_kind(kind: str, found: Mapping[str, ColumnGuess]) -> bool:
+    """Return whether the columns found suffice for a table of a kind.
+
+    A rig needs a force whose header is not in `WEAK`; legs all six angles; an IMU roll and pitch, a
+    quaternion or all three rates; a track x and y.
+    """
     if kind == RIG:
         forces = [found[name] for name in ("normal_force", "traction_force") if name in found]
         return any(not _is_weak(guess.name) for guess in forces)
@@ -196,12 +215,23 @@ def _is_kind(kind: str, found: Mapping[str, ColumnGuess]) -> bool:
     return {"x_m", "y_m"} <= found.keys()
 
 
-def _fits(header: str, canonical: str, kind: str, first: int) -> bool:
+def _fits(header: str, canonical: str, kind: str, lowest_leg: int) -> bool:
+    """Return whether a header may mean a canonical column of a kind.
+
+    It does if it is the canonical name, if it names the leg of that angle, or if a pattern of
+    `NAMES` matches it as a whole, with or without its unit.
+
+    Args:
+        header: Header in the file.
+        canonical: Canonical name of the column.
+        kind: One of `KINDS`.
+        lowest_leg: Lowest number of a leg in the table's headers; 0 for legs counted from 0.
+    """
     if is_canonical(header, canonical):
         return True
     if canonical in ANGLES:
         leg = leg_of(header)
-        return leg is not None and leg[0] - min(first, 1) + 1 == int(canonical[-1])
+        return leg is not None and leg[0] - min(lowest_leg, 1) + 1 == int(canonical[-1])
     pattern = NAMES[kind].get(canonical)
     if pattern is None:
         return False
@@ -210,12 +240,23 @@ def _fits(header: str, canonical: str, kind: str, first: int) -> bool:
 
 
 def _is_weak(header: str) -> bool:
+    """Return whether a header, without its unit, is one of `WEAK`, which may mean other columns."""
     return split_header(header)[0] in WEAK
 
 
 def _guess(
     table: RawTable, canonical: str, kind: str, fitting: list[str], *, ours: bool
 ) -> ColumnGuess:
+    """Guess unit and sign of a canonical column from the best of the headers that fit it.
+
+    Args:
+        table: The table.
+        canonical: Canonical name of the column.
+        kind: One of `KINDS`.
+        fitting: Headers that fit, the best first; the others make the first one doubtful.
+        ours: Whether the table has headers that only this project uses, so that names which other
+            programs use too, such as `t` or `yaw`, are in SI with the canonical sign.
+    """
     name, *others = fitting
     si_unit = UNITS[kind][canonical]
     own = is_canonical(name, canonical) and (ours or name not in _EVERYBODYS)
@@ -254,6 +295,10 @@ def _nanoseconds(table: RawTable, name: str) -> str | None:
 
 
 def _name_doubt(name: str, canonical: str, others: list[str]) -> str:
+    """Return why another column may be meant; "" if that is sure.
+
+    Either other headers fit too, or a leg is not named by its place, or the name is in `WEAK`.
+    """
     if others:
         return f"could also be {', '.join(map(repr, others))}"
     if canonical in ANGLES and not (leg_of(name) or (0, False))[1]:
@@ -262,6 +307,18 @@ def _name_doubt(name: str, canonical: str, others: list[str]) -> str:
 
 
 def _sign(canonical: str, numbers: Array | None, *, known: bool) -> tuple[int, str]:
+    """Return the sign, 1 or -1, that makes a column canonical, and why it is in doubt, or "".
+
+    A normal force and the speeds of the discs are positive at the median. Leg angles, unless they
+    are known to be canonical, grow at the median step of the unwrapped angle; their sign stays in
+    doubt, since the robot may have walked backwards. Other columns keep their sign, which is in
+    doubt for those in `_SIGNED`.
+
+    Args:
+        canonical: Canonical name of the column.
+        numbers: Its numbers, angles in rad, shape (n,); None if they cannot be read.
+        known: Whether the header alone tells that the sign is canonical.
+    """
     pressed = canonical == "normal_force" or canonical.startswith("omega_")
     if numbers is None:
         open_sign = pressed or (canonical in _SIGNED and not known)

@@ -26,10 +26,17 @@ _FORCE = (
     r"(.*_)?(linear_acceleration|acceleration|accel(erometer)?|acc|a|beschleunigung|"
     r"specific_force|force)_?"
 )
+# `_position` closes the first group.
 _POSITION = r"((.*_)?(pos(ition)?|translation|p|global_position)_?"
 
 
 def _position(axis: str, others: str) -> str:
+    """Return a regular expression of the headers of a position along an axis.
+
+    Args:
+        axis: "x", "y" or "z".
+        others: Further names, as alternatives of a regular expression.
+    """
     return (
         rf"{axis}|{_POSITION}{axis})|(.*_)?{axis}(_axis)?(_global)?_?(pos(ition)?|koordinate)|"
         rf"t{axis}|p_rs_r_{axis}|{others}"
@@ -109,8 +116,9 @@ _GREEK: Final = str.maketrans({
 def leg_of(header: str) -> tuple[int, bool] | None:
     """Return the leg that a header names, 1 to 6, and whether it names it by its place.
 
-    None if it names none. A number is that of the program that wrote the file, whose order of legs
-    may be another; one from 0 on is returned as it is. Letters may stand for other places.
+    None if it names none. A number is returned as written, also by programs that count from 0 or
+    order the legs otherwise. Letters such as FL are read as places, but not told as such, since
+    they may be meant otherwise.
 
     >>> leg_of("leg_front_left_joint"), leg_of("Winkel Bein 3 [°]"), leg_of("position[0]")
     ((1, True), (3, False), (0, False))

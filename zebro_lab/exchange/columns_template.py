@@ -107,6 +107,10 @@ def render_columns(
 def _column(
     table: RawTable, name: str, kind: str, guesses: Mapping[str, ColumnGuess], at: str
 ) -> str:
+    """Format the section of a canonical column, each doubtful value with "?" and a comment why.
+
+    A column without a guess is an entry in comments, to be filled in; covariances are left out.
+    """
     guess, meaning = guesses.get(name), _meaning(name, kind)
     if guess is None:
         missing = kind == RIG or name in _MEANINGS or name.startswith("theta")
@@ -129,6 +133,10 @@ def _column(
 
 
 def _slip_lines(lines: list[str], guesses: Mapping[str, ColumnGuess]) -> list[str]:
+    """Add the slip definition that is needed to the lines of a slip ratio without a column for it.
+
+    All lines become comments where both disc speeds are there, from which slip is computed.
+    """
     if "slip_definition" not in guesses:
         lines = [*lines, f'definition = "{DOUBT}"  # NEEDED: material, travel or larger']
     if {"omega_leg", "omega_ground"} <= guesses.keys():
@@ -138,11 +146,13 @@ def _slip_lines(lines: list[str], guesses: Mapping[str, ColumnGuess]) -> list[st
 
 
 def _line(key: str, value: str, doubt: str, more: str = "") -> str:
+    """Format an entry `key = "value"`; a doubt adds "?" to the value and is told in the comment."""
     comment = "; ".join(text for text in (more, f"CHECK: {doubt}" if doubt else "") if text)
     return f"{key} = {_quoted(value + DOUBT * bool(doubt))}" + (f"  # {comment}" if comment else "")
 
 
 def _meaning(name: str, kind: str) -> str:
+    """Return what a canonical column means, in a few words for the comment beside it."""
     if kind == RIG:
         return CANONICAL[name].meaning
     if kind == LEGS and name != "t":
@@ -151,6 +161,7 @@ def _meaning(name: str, kind: str) -> str:
 
 
 def _summary(table: RawTable, name: str) -> str:
+    """Return first, least and largest number of a column; of other columns the first cell."""
     numbers = numbers_or_none(table, name)
     if numbers is None:
         return f"first {_quoted(str(table.columns[name].iloc[0])[:40])}"

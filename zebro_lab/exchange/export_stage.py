@@ -90,11 +90,13 @@ def _unended(folder: Path, manifest: RunManifest, end: float | None) -> tuple[st
 
 
 def _raw_columns(stream: SampleColumns) -> Columns:
+    """Return the columns of a stream, its counts of shape (n, k) as `count1` to `countk`."""
     counts = {f"count{i + 1}": column for i, column in enumerate(stream.counts.T)}
     return {name: column for name, column in vars(stream).items() if name != "counts"} | counts
 
 
 def _write(file: Path, columns: Columns, *, to: Format, source: str) -> None:
+    """Write one table; the source goes into the metadata of Parquet, as CSV has no place for it."""
     table = pd.DataFrame(dict(columns))
     if to == "csv":
         table.to_csv(file, index=False, lineterminator="\n")

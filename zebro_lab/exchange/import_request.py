@@ -27,6 +27,7 @@ LAST: Final = datetime(2038, 1, 19, tzinfo=UTC)
 
 
 def _moment(text: str) -> datetime:
+    """Parse the date of `--start` in ISO 8601, with or without a time zone."""
     try:
         return datetime.fromisoformat(text)
     except ValueError as error:
@@ -117,6 +118,7 @@ class ImportRequest:
 
 
 def _sd(text: str, si_unit: str, *, most: float, key: str) -> float:
+    """Convert a standard deviation to SI; raise unless it is above 0 and at most `most`."""
     found = option_to_si(text, si_unit, key=key)
     if not 0 < found <= most:
         raise SettingsError(f"found {text}; expected above 0, at most {most:g} {si_unit}", key=key)
@@ -124,6 +126,7 @@ def _sd(text: str, si_unit: str, *, most: float, key: str) -> float:
 
 
 def _require_start(start: datetime) -> None:
+    """Raise `SettingsError` if a start has no time zone or is not from `FIRST` to `LAST`."""
     if start.tzinfo is None:
         raise SettingsError(
             f"{start.isoformat()} has no time zone; append it, such as +00:00 for UTC or +01:00",

@@ -43,7 +43,8 @@ class Imported:
     Attributes:
         folder: The run folder that was written.
         manifest: Its manifest.
-        notes: Notes on start time, damage and left-out rows, one line each.
+        notes: Notes, one line each: on the start time, on damage and left-out rows, on leg angles
+            that look wrong, and on columns or a source stated in a folder above a file's own.
     """
 
     folder: Path
@@ -61,7 +62,7 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
         watcher: Progress display.
 
     Returns:
-        The run folder written, and notes.
+        The run folder that was written, its manifest, and notes on how the files were read.
 
     Raises:
         SettingsError: An option, a `columns.toml` or the robot's file is invalid, or neither leg
@@ -77,7 +78,7 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
     walk, notes = _walk(request)
     folder = write_imported_walk(request.data, walk)
     files = ((LEGS, request.legs), (IMU, request.imu), (TRACK, request.track))
-    above = [
+    above = [  # a columns.toml that somebody may have forgotten in a folder above
         line for kind, file in files if file is not None
         for line in columns_above(kind, file, request.columns)
     ]  # fmt: skip
@@ -85,6 +86,7 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
 
 
 def _require_something(request: ImportRequest) -> None:
+    """Raise `SettingsError` if no file is given, or an option is given without its file."""
     legs, track = request.legs is not None, request.track is not None
     walk = "belongs to a walk; give the leg angles, too, with --legs"
     wrong = (
@@ -105,6 +107,11 @@ def _require_something(request: ImportRequest) -> None:
 
 
 def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
+    """Read and check all files of a request; return the walk and notes on how they were read.
+
+    The run's time 0 is that of the legs' file, or of the track's if there are no legs, as `_start`
+    finds it. The source of a track counts only where it stands alone.
+    """
     robot = RobotFile() if request.robot is None else read_robot_file(request.robot)
     legs, legs_topic = (None, None) if request.legs is None else _legs(request.legs, request)
     track, track_topic = (None, None) if request.track is None else _track(request.track, request)
@@ -156,13 +163,14 @@ def _times(part: LegLog | ImuLog | ForeignTrack) -> tuple[Array, Path]:
 
 
 def _legs(path: Path, request: ImportRequest) -> tuple[LegLog, str | None]:
-    """Read the leg log; return it, and the topic that was read of a ROS log. So do the others."""
+    """Read the leg angles; return them, and the topic that was read if the file is a ROS log."""
     mapping, topic = read_mapped_columns(LEGS, path, request.columns, LEG_UNITS)
     names = LegNames(joint_names(request.joints), request.topic, topic)
     return legs_of_file(path, mapping, names=names)
 
 
 def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
+    """Read the IMU; return it, and the topic that was read if the file is a ROS log."""
     series, topic = read_mapped_columns(IMU, path, request.columns, IMU_UNITS)
     if not is_ros_log(path):
         return imu_of_table(read_table_file(path, sheet=series.sheet), series), None
@@ -172,6 +180,7 @@ def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
 
 
 def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None]:
+    """Read the track; return it, and the topic that was read if the file is a ROS log."""
     alone = request.legs is None
     columns, topic = read_mapped_columns(TRACK, path, request.columns, MAPPED_UNITS, alone=alone)
     track = read_foreign_track(
@@ -219,7 +228,7 @@ def _start(
 
 
 def _require_shared_time(t: Array, kind: str, times: Array, file: Path, offset: float) -> None:
-    """Raise `DataError` if IMU or track has no time in the leg log's range.
+    """Raise `DataError` if no row of IMU or track lies within the time of the leg log.
 
     Args:
         t: Times of the leg log, as in its file [s].

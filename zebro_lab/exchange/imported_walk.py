@@ -127,6 +127,7 @@ def _write_more(draft: Path, walk: ImportedWalk) -> None:
 
 
 def _leg_profile(rate: float) -> LegProfile:
+    """Return the profile of imported leg angles: degrees as counts, canonical in zero and sign."""
     return LegProfile(
         name=LEGS,
         layout="table",
@@ -141,6 +142,7 @@ def _leg_profile(rate: float) -> LegProfile:
 
 
 def _rate(t: Array) -> float:
+    """Return the sampling rate, one over the median time step [Hz]."""
     return float(1 / np.median(np.diff(t)))
 
 
@@ -191,4 +193,5 @@ def read_imu_messages(
 
 
 def _absent(message: Any, field: str) -> bool:
+    """Return whether an IMU message marks a field as not measured, by -1 as first covariance."""
     return getattr(message, f"{field}_covariance")[0] == -1

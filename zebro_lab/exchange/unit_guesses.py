@@ -41,7 +41,10 @@ class UnitGuess:
 
 
 def guess_unit(table: RawTable, name: str, si_unit: str, *, si: bool) -> UnitGuess:
-    """Find the unit of a column.
+    """Find the unit of a column: the one that the file states if it fits, else a doubtful guess.
+
+    A stated unit that measures another quantity is replaced by what it probably means (`_MEANT`).
+    Without a stated unit, header and largest number decide.
 
     Args:
         table: The table.
@@ -76,11 +79,16 @@ def _date_unit(table: RawTable, name: str) -> UnitGuess | None:
     elif re.fullmatch(r"\d+:\d\d.*", str(first)):
         return UnitGuess(CLOCK, "")
     else:
-        zoned = _ZONE.fullmatch(str(first)[10:]) is not None
+        zoned = _ZONE.fullmatch(str(first)[10:]) is not None  # after YYYY-MM-DD
     return UnitGuess("date", "") if zoned else UnitGuess("date UTC", "the file has no time zone")
 
 
 def _by_numbers(table: RawTable, name: str, si_unit: str) -> str:
+    """Guess the unit of a column for which the file states none, from header and largest number.
+
+    A header with rpm or Drehzahl means rpm, times of 1e11 and more count ms, us or ns since 1970, a
+    ratio above `_RATIO` is in percent, an angle above `_RADIANS` in degrees; all else is SI.
+    """
     plain = plain_name(name)
     if si_unit == "rad/s":
         return "rpm" if re.search(r"rpm|drehzahl", plain) else si_unit

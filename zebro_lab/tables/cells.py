@@ -68,7 +68,9 @@ def decimal_sign(cells: Sequence[str]) -> str | None:
 
 
 def is_units_row(cells: Sequence[str]) -> bool:
-    """Return whether a row of cells holds units: most are known ones, and none is a number.
+    """Return whether a row holds units: over 60 % of its filled cells are known units.
+
+    At least one of these must be other than "-" and "1", which may stand for no value or a number.
 
     >>> is_units_row(["sec", "kph", "rpm", "-"]), is_units_row(["t", "FZ", "FX"])
     (True, False)

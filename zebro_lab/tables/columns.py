@@ -65,6 +65,7 @@ def looks_like_other(headers: Collection[str], expected: Collection[str]) -> str
 
 
 def _kind(names: Collection[str]) -> str | None:
+    """Return the first kind in `_MARKS` whose names all occur, in either case; None if none is."""
     lower = {name.lower() for name in names}
     return next((kind for marks, kind in _MARKS if marks <= lower), None)
 
@@ -297,8 +298,8 @@ class Columns:
             advice: What to do about a cell without a number, for the error message.
 
         Raises:
-            DataError: As in `numbers`; or neither file nor map state the unit, and in seconds the
-                samples would be more than `INTERVALS` apart, or less.
+            DataError: As in `numbers`; or neither file nor map state the unit, and the median
+                step, taken in seconds, is outside `INTERVALS`.
         """
         values = self.numbers(table, name, what="time", advice=advice)
         mapped = self.mapped[name]
@@ -318,7 +319,7 @@ class Columns:
             steps: Differences of successive times, without those between runs, shape (n,) [s].
 
         Raises:
-            DataError: Half of the steps or more are outside `INTERVALS`.
+            DataError: The median step is positive and outside `INTERVALS`.
         """
         usual = float(np.median(steps)) if len(steps) else 0.0
         if usual > 0 and not INTERVALS[0] <= usual <= INTERVALS[1]:

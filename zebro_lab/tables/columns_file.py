@@ -191,6 +191,10 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
 
 
 def _unit(table: SettingsTable, si_unit: str) -> tuple[str, float]:
+    """Read the unit of a column, by default SI; return it, and the factor that converts it to SI.
+
+    The factor of a unit of dates is 1.
+    """
     unit = table.text("unit") if "unit" in table else si_unit
     if si_unit == "s" and is_date_unit(unit):
         return unit, 1.0
@@ -221,6 +225,7 @@ def _sign(table: SettingsTable) -> int:
 
 
 def _runs(table: SettingsTable) -> RunRule:
+    """Read the rule that separates runs; raise if more than one of its keys is given."""
     runs = table.table("runs")
     given = [key for key in ("by", "gap", "each_row") if key in runs]
     if len(given) > 1:

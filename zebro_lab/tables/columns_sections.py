@@ -77,15 +77,17 @@ def read_section(
 def nearest_columns(kind: str, folder: Path) -> tuple[Path | None, tuple[Path, str] | None]:
     """Find the `columns.toml` for a kind of table: in its folder, or in the nearest one above.
 
-    Beside it stands the nearest one that states a source for the kind, with that source.
-
-    One that has nothing for this kind is passed over, but taken, for its source, if there is no
+    A file that has nothing for this kind is passed over, but taken, for its source, if there is no
     other. One without sections above the table's folder is for legs if it maps their angles, else
     for rigs. Results of commands have their own headers: for them nothing above is looked up.
 
     Args:
         kind: One of `KINDS`.
         folder: Folder of the table.
+
+    Returns:
+        The file, None if there is none; and the nearest file that states a source for the kind,
+        which may be another one, with that source, None if none does.
 
     Raises:
         SettingsError: A `columns.toml` on the way cannot be read as TOML.
@@ -130,6 +132,7 @@ def columns_above(
 
 
 def _has_entries(kind: str, file: Path) -> bool:
+    """Return whether a `columns.toml` states more than the source of a kind of table."""
     return bool(set(read_section(kind, file).left) - {"source"})
 
 
@@ -151,7 +154,10 @@ def _documents(folder: Path) -> Iterator[tuple[Path, dict[str, Any], bool]]:
 
 
 def _above(folder: Path) -> Iterator[Path]:
-    """Yield the folders above one, named as it is; of a result of a command none."""
+    """Yield the folders above one, the nearest first; none above the result of a command.
+
+    Their paths are relative to the working folder where the folder is named so and lies in it.
+    """
     if result_kind(folder) is not None:
         return
     working = Path.cwd()
@@ -218,7 +224,11 @@ def is_for(kind: str, document: Mapping[str, Any], *, beside: bool) -> bool:
 
 
 def _gives_source(kind: str, document: Mapping[str, Any]) -> bool:
-    """Return whether the source of a `columns.toml` holds for kinds that it does not map, too."""
+    """Return whether a `columns.toml` that does not map a kind states its source nevertheless.
+
+    A file without sections is for legs or a rig, and gives its source to none of these two unless
+    it maps it.
+    """
     return kind not in PLAIN or is_sectioned(document)
 
 

@@ -66,6 +66,11 @@ def read_csv_file(path: Path, *, bare: bool = False) -> RawTable:
 
 
 def _encoding(path: Path, data: bytes) -> str:
+    """Return the first encoding that decodes the whole file, of those that fit its first bytes.
+
+    Raises:
+        DataError: The file is of another format, which its first bytes tell, or is no text.
+    """
     head = data[:_HEAD_BYTES]
     for magic, what in _MAGIC.items():
         if head.startswith(magic):
@@ -113,7 +118,10 @@ def _unbroken(lines: list[Line]) -> list[Line]:
 
 
 def _is_open(text: str) -> bool:
-    """Return whether a text ends in a cell in quotes; a quote opens only where a cell begins."""
+    """Return whether a text ends within a cell in quotes.
+
+    A quote opens a cell only after a separator or at the start, so that 5" is five inches.
+    """
     opened = False
     for i, character in enumerate(text):
         if character == '"':
@@ -122,6 +130,7 @@ def _is_open(text: str) -> bool:
 
 
 def _layout(path: Path, lines: list[Line], *, bare: bool) -> TextLayout:
+    """Find separator and header from the first lines; raise if there are too many columns."""
     try:
         layout = find_layout(lines, bare=bare)
     except DataError as error:
@@ -134,6 +143,10 @@ def _layout(path: Path, lines: list[Line], *, bare: bool) -> TextLayout:
 
 
 def _frame(path: Path, layout: TextLayout, data: bytes, encoding: str) -> pd.DataFrame:
+    """Read all rows below the header with pandas, under the names of the layout.
+
+    Where rows have one cell more than the header, the last column is named `_SURPLUS`.
+    """
     names = [*layout.header.names, *[_SURPLUS] * (layout.width > len(layout.header.names))]
     text = io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline="")
     for _ in range(layout.last_line):  # here, since pandas looks for quotes in skipped lines
@@ -160,6 +173,7 @@ def _frame(path: Path, layout: TextLayout, data: bytes, encoding: str) -> pd.Dat
 
 
 def _table(path: Path, layout: TextLayout, frame: pd.DataFrame, encoding: str) -> RawTable:
+    """Return the cells as a raw table, with notes on separator, encoding and header."""
     columns = _without_empty_ends(path, frame, layout)
     odd = layout.separator != ","
     said = [f"cells are separated by {SEPARATORS[layout.separator]}"] * odd
@@ -227,6 +241,7 @@ def decoded(head: bytes, encoding: str) -> str:
 
 
 def _by_zeros(head: bytes) -> tuple[str, ...]:
+    """Return UTF-16 in the byte order that zero bytes of Western text show; () if they are few."""
     half = max(len(head) // 2, 1)
     if head[1::2].count(0) > _ZEROS * half:
         return ("utf-16-le",)
@@ -234,6 +249,7 @@ def _by_zeros(head: bytes) -> tuple[str, ...]:
 
 
 def _is_text(head: bytes, encoding: str) -> bool:
+    """Return whether bytes decode in an encoding to a text without control characters."""
     try:
         text = decoded(head, encoding)
     except UnicodeDecodeError:
@@ -248,11 +264,13 @@ _FOOTER = re.compile(
 )
 _NO_STATISTIC: Final = re.compile(r"(?:count|end|eof|anzahl|ende)\b.*", re.IGNORECASE)
 """Words that a column of remarks may well end with."""
-_FOOTER_ROWS: Final = 10
+_FOOTER_ROWS: Final = 10  # rows at the end in which a footer is looked for
 
 
 def _require_full_rows(table: RawTable) -> None:
-    """Check that no row between blanks has fewer cells than the header: which is empty is unknown.
+    """Check that each row has as many cells as the header, where blanks separate the cells.
+
+    With fewer cells it would be unknown which of them is missing.
 
     Raises:
         DataError: A row has fewer cells.
@@ -269,9 +287,11 @@ def _require_full_rows(table: RawTable) -> None:
 
 
 def require_no_footer(table: RawTable) -> None:
-    """Check that no column ends with a word such as "Mean": that row is no sample.
+    """Check that no column ends with a word such as "Mean": such a row is no sample.
 
-    In a column of numbers, or of texts where the last rows alone have such words, each once.
+    The word is an error in the last `_FOOTER_ROWS` rows of a column whose first cell is a number or
+    date. In a column of texts it is one only if all rows from it on hold such words, each once, and
+    no row above does; else it may be a remark.
 
     Raises:
         DataError: One does.
@@ -291,6 +311,7 @@ def require_no_footer(table: RawTable) -> None:
 
 
 def _are_values(cells: pd.Series) -> bool:
+    """Return whether there are cells, and the first is a number or date."""
     return len(cells) > 0 and kind_of(str(cells.iloc[0])) == "value"
 
 

@@ -84,7 +84,10 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
 
 
 def _past_midnight(seconds: Array) -> Array:
-    """Return times of day that go on past midnight, shape (n,) [s]; NaN stays."""
+    """Return times of day as seconds since the first midnight, shape (n,) [s]; NaN stays.
+
+    A fall by more than half a day begins the next day.
+    """
     known = np.flatnonzero(np.isfinite(seconds))
     days = np.cumsum(np.diff(seconds[known]) < -_DAY / 2)
     passed = seconds.copy()
@@ -97,10 +100,12 @@ def _numbered_month(match: re.Match[str]) -> str:
 
 
 def _iso(cell: object) -> object:
+    """Return a date or time as text in ISO 8601, any other cell as its text."""
     return cell.isoformat() if hasattr(cell, "isoformat") else str(cell)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def _offset(zone: str | None) -> float:
+    """Return the offset from UTC of a zone such as "+01:00" [s]; 0 for "UTC" or None."""
     if zone in (None, "UTC"):
         return 0.0
     shift = datetime.fromisoformat(f"2000-01-01T00:00:00{zone}").utcoffset()

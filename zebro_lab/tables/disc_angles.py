@@ -14,9 +14,9 @@ from zebro_lab.tables.run_separation import Runs
 
 ANGLES: Final = ("angle_leg", "angle_ground")
 DISAGREEMENT: Final = 0.2
-"""Relative difference of a disc's turn between samples, by its angle and by its speed [-]."""
-_MOST_SURE = 0.5  # rad, from which a difference between wrapped angles tells, whatever the turn
-_TURNING = 1e-4  # rad between samples, below which nothing is told
+"""Largest relative difference between a disc's turns by its angle and by its speed [-]."""
+_MOST_SURE = 0.5  # rad, largest difference allowed for fast discs, since it is wrapped to a turn
+_TURNING = 1e-4  # rad, least turn between samples at which angle and speed are compared
 
 
 def disc_angles(
@@ -34,8 +34,8 @@ def disc_angles(
         each row is a trial.
 
     Raises:
-        DataError: A cell is no finite number, or a disc of a table turns by its angle otherwise
-            than by its speed.
+        DataError: A cell is no finite number, or by its angle a disc turns otherwise than by its
+            speed; in a recorded run the latter gives a note, and the angle is not used.
     """
     recorded = [name for name in ANGLES if table.source_of(name)]
     if not recorded:
@@ -90,7 +90,12 @@ def joined_angles(
 
 
 def _problem(table: RigTable, name: str, runs: Runs, time: Array | None) -> str:
-    """Say that an angle turns otherwise than its disc's speed, either way round; "" where not."""
+    """Describe how a disc turns otherwise by its angle than by its speed; "" where both agree.
+
+    Turns between samples of a run are compared: the change of the angle, and the trapezoidal
+    integral of the speed, by the median size of their difference, which is wrapped to a turn. The
+    angle may have either sign.
+    """
     speed = name.replace("angle", "omega")
     if time is None or table.source_of(speed) is None:
         return ""
@@ -116,4 +121,5 @@ def _problem(table: RigTable, name: str, runs: Runs, time: Array | None) -> str:
 
 
 def _wrapped(angle: Array) -> Array:
+    """Wrap angles to -pi to pi."""
     return (angle + np.pi) % (2 * np.pi) - np.pi

@@ -80,6 +80,7 @@ def _filled_sheet(path: Path, sheets: Mapping[str, Cells], wanted: str | None) -
 
 @contextmanager
 def _opened(path: Path, content: bytes, *, values: bool) -> Iterator[Any]:
+    """Open a workbook with openpyxl: stored values of formulas if `values`, else the formulas."""
     try:
         import openpyxl
     except ImportError as error:
@@ -95,7 +96,10 @@ def _opened(path: Path, content: bytes, *, values: bool) -> Iterator[Any]:
 
 
 def _sheets(path: Path, content: bytes, *, values: bool) -> Mapping[str, Cells]:
-    """Return the cells of each sheet, none of a sheet of charts; with formulas, if not values."""
+    """Return the rows of cells of each sheet, without empty rows at its end or sheets of charts.
+
+    Cells with formulas hold their stored values if `values`, else the formulas.
+    """
     with _opened(path, content, values=values) as book:
         sheets = {
             name: [list(row) for row in book[name].iter_rows()]
@@ -109,6 +113,7 @@ def _sheets(path: Path, content: bytes, *, values: bool) -> Mapping[str, Cells]:
 
 
 def _header(path: Path, name: str, cells: Cells) -> Header:
+    """Find the header in the first `_HEAD_ROWS` rows; raise `DataError` if there is none."""
     texts = [[_text(cell) for cell in row] for row in cells[:_HEAD_ROWS]]
     data = data_rows(texts)
     if data is None:
@@ -137,6 +142,7 @@ def _require_values(path: Path, name: str, cells: Cells, formulas: Cells, first:
 
 
 def _columns(cells: Cells, header: Header) -> dict[str, pd.Series]:
+    """Return the columns below the header, without those that have neither a name nor cells."""
     rows = cells[header.first :]
     columns = {}
     for i, name in enumerate(header.names):
@@ -149,6 +155,10 @@ def _columns(cells: Cells, header: Header) -> dict[str, pd.Series]:
 
 
 def _series(cells: Sequence[Any]) -> pd.Series:
+    """Return cells as numbers if all are numbers, as dates if all are dates, else as objects.
+
+    Among objects numbers stay numbers, and dates become texts. None is an empty cell.
+    """
     known = [cell for cell in cells if cell is not None]
     if all(isinstance(cell, (int, float)) and not isinstance(cell, bool) for cell in known):
         return pd.Series(cells, dtype=float)
@@ -159,6 +169,7 @@ def _series(cells: Sequence[Any]) -> pd.Series:
 
 
 def _text(cell: Any) -> str:
+    """Return a cell as text: dates in ISO 8601, durations in seconds, "" for an empty cell."""
     if cell is None:
         return ""
     if isinstance(cell, (datetime, date, time)):
@@ -167,6 +178,7 @@ def _text(cell: Any) -> str:
 
 
 def _require_bounded(path: Path, content: bytes) -> None:
+    """Raise if a file is no zip archive, as workbooks are, or is too large when unpacked."""
     if not content.startswith(b"PK"):
         raise DataError("is not an Excel workbook; if it is text, rename it to end in .csv",
                         file=path)  # fmt: skip

@@ -60,9 +60,10 @@ class NoHeader(ValueError):
 def data_rows(rows: Sequence[Row]) -> DataRows | None:
     """Find the rows of data: those of which half of the cells or more are numbers or dates.
 
-    Of several stretches of such rows the one with most values is taken, since settings above a
-    table have numbers too, or the first that is alike: then what is between is no header but a row
-    that cannot be read. The first row is a header where it has a text above numbers: `t,1,2,3`.
+    Settings above a table have numbers too. Of several stretches of such rows the one is best that
+    has most values, weighted by their share of its cells. An earlier stretch that is like the best
+    one, in width, share and first cell, is taken instead: what is between is a row that cannot be
+    read, and no header. The first row is a header where it has a text above numbers: `t,1,2,3`.
 
     Returns None if no row has a number.
     """
@@ -150,6 +151,11 @@ def unique_names(names: Sequence[str]) -> list[str]:
 
 
 def _stretches(kinds: Sequence[Sequence[str]]) -> list[tuple[int, int]]:
+    """Return begin and end of each run of rows that have a value, and as many values as texts.
+
+    The end is the row after the last one. A run from row 0 on begins at row 1 instead if row 0 has
+    a text above a column of values.
+    """
     found, start = [], None
     for i, row in enumerate([*kinds, ()]):
         values, texts = row.count("value"), row.count("text")
@@ -166,6 +172,7 @@ def _stretches(kinds: Sequence[Sequence[str]]) -> list[tuple[int, int]]:
 def _described(
     rows: Sequence[Row], kinds: Sequence[Sequence[str]], first: int, stop: int
 ) -> DataRows:
+    """Describe a stretch of rows; its width is the most frequent one, the larger of equals."""
     widths = Counter(_width(row) for row in rows[first:stop])
     flat = Counter(kind for row in kinds[first:stop] for kind in row)
     width = max(widths, key=lambda width: (widths[width], width))
@@ -174,7 +181,7 @@ def _described(
 
 
 def _names_columns(first: Sequence[str], below: Sequence[Sequence[str]]) -> bool:
-    """Return whether a text of the first row stands above a column of numbers alone."""
+    """Return whether a text of the first row has values alone in the five rows below it."""
     return any(
         kind == "text" and all(len(row) > i and row[i] == "value" for row in below[:5])
         for i, kind in enumerate(first)
@@ -182,11 +189,20 @@ def _names_columns(first: Sequence[str], below: Sequence[Sequence[str]]) -> bool
 
 
 def _width(row: Row) -> int:
+    """Return the number of cells of a row up to the last that is not blank."""
     return max((i for i, cell in enumerate(row, start=1) if cell.strip()), default=0)
 
 
 def _is_full(row: Row, width: int) -> bool:
-    """Return whether a row may belong to the header of data of a width; titles are shorter."""
+    """Return whether a row above the data may be of names or units, unlike a title, which is short.
+
+    It has at least as many cells as the data; the last that is filled is the data's last but one or
+    later; and two cells are filled, or one above data of one column.
+
+    Args:
+        row: Cells of the row.
+        width: Number of columns of the data.
+    """
     found = sum(bool(cell.strip()) for cell in row)
     return _width(row) >= width - 1 and found >= min(2, width) and len(row) >= width
 
@@ -219,6 +235,7 @@ def _names(block: list[Row], above: list[Row], *, has_units: bool) -> tuple[list
 
 
 def _distinct(names: Sequence[str]) -> bool:
+    """Return whether no two names are equal, apart from empty ones."""
     found = [name for name in names if name]
     return len(set(found)) == len(found)
 
@@ -233,8 +250,10 @@ def _filled(row: Row, width: int) -> list[str]:
 
 
 def _padded(row: Row, width: int) -> list[str]:
+    """Return the stripped cells of a row, cut or filled with empty ones to a width."""
     return [cell.strip() for cell in [*row, *[""] * width][:width]]
 
 
 def _start(row: Row) -> str:
+    """Return the beginning of a row for an error message."""
     return ", ".join(cell.strip() for cell in row)[:40]

@@ -118,7 +118,15 @@ def suffix_unit(header: str, si_unit: str) -> str | None:
 
 
 def _is_name(text: str, *, in_round: bool) -> bool:
-    """Return whether text in brackets is plainly a name or an index, and no unit."""
+    """Return whether text in brackets is plainly a name or an index, and no unit.
+
+    Each of its words must be in `_NAME`, or, in round brackets, have `_LONG_WORD` letters and spell
+    no unit. A text with "*", "/" or "^" is a unit; one without letters, such as an index, a name.
+
+    Args:
+        text: Text in the brackets.
+        in_round: Whether the brackets are round, which hold names more often than square ones.
+    """
     words = re.findall(r"[^\W\d_]+", text)
     if "*" in text or "/" in text or "^" in text:
         return False

@@ -51,6 +51,7 @@ def _raw(path: Path, table: pa.Table) -> RawTable:
 
 
 def _cells(column: pa.ChunkedArray) -> pd.Series:
+    """Return the cells of a column; all empty if they are of a kind that is not read."""
     if not _is_plain(column.type):
         return pd.Series([None] * len(column), dtype=object)
     cells = column.to_pandas()
@@ -58,6 +59,7 @@ def _cells(column: pa.ChunkedArray) -> pd.Series:
 
 
 def _is_plain(kind: Any) -> bool:
+    """Return whether an Arrow type, or that of a dictionary's values, is read: see `known`."""
     kind = kind.value_type if isinstance(kind, pa.DictionaryType) else kind
     known = (pa.types.is_string, pa.types.is_large_string, pa.types.is_primitive, pa.types.is_null,
              pa.types.is_decimal)  # fmt: skip

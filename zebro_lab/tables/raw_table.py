@@ -307,6 +307,7 @@ def differing_headers(
 
 
 def _cell_text(cell: Any) -> str:
+    """Return a cell as text, "" for an empty one (None, NaN or NaT)."""
     return cell if isinstance(cell, str) else "" if cell is None or cell != cell else str(cell)
 
 
@@ -331,12 +332,16 @@ def _as_numbers(cells: pd.Series) -> Array:
 
 
 def _has_points(cells: pd.Series) -> bool:
+    """Return whether a cell has a point."""
     # 1,234.5 and 1.234,5 are both possible: if points occur, the comma is not the decimal sign.
     return bool(cells.astype(str).str.contains(".", regex=False, na=False).any())
 
 
 def _all_grouped(cells: pd.Series, sign: str) -> NDArray[np.bool_]:
-    """Return which cells may have a thousands separator, if all cells with this sign may."""
+    """Mark the cells with a sign, "," or ".", if in all of them it may separate thousands.
+
+    Nothing is marked if one cell, such as 0,5, shows that it is a decimal sign.
+    """
     texts = [str(cell) if isinstance(cell, str) else "" for cell in cells]
     signed = np.array([sign in text for text in texts], dtype=bool)
     grouped = np.array([may_be_thousands(text) for text in texts], dtype=bool)

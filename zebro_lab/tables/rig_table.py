@@ -30,10 +30,11 @@ class RigTable:
     rows: NDArray[np.intp]
 
     def source_of(self, name: str) -> MappedColumn | None:
-        """Return the mapping of a canonical column; of one not mapped, if it is a header.
+        """Return how a canonical column is read: by the column map, else from a header of its name.
 
-        None if it is neither. Without a unit in the column map, that of the file holds, else SI.
-        The table may lack the header that a column is mapped to.
+        None if the map has no entry and the table no such header. A unit in the column map prevails
+        over that of the file, and without both the unit is SI. The table may lack the header that a
+        column is mapped to.
 
         Raises:
             DataError: The file states a unit that is unknown or measures another quantity.
@@ -137,6 +138,7 @@ class RigTable:
         if good.all():
             return
         source, row = self.required(name), int(self.rows[np.argmin(good)])
+        # The message quotes the cell as it is in the file, unless more than a unit was converted.
         si = is_date_unit(source.unit) or source.offset or source.nanoseconds or source.scale != 1
         value = float((source.in_si(self.raw) if si else self.raw.numbers(source.name))[row])
         unit = CANONICAL[name].unit or "" if si else source.unit

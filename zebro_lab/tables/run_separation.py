@@ -31,9 +31,13 @@ class Runs:
 
 
 def separate_runs(table: RigTable, label: str) -> Runs:
-    """Assign every kept row to a run by `[runs]`, else by the `run` column, else to a single run.
+    """Assign every kept row to a run.
 
-    Runs are found on all rows, before [rows] keep is applied, which therefore splits none in two.
+    By `[runs]` in the column map either every row is a run (`each_row`), or a run starts after each
+    pause (`gap`), or wherever a value in one of the columns `by` changes; values that come back
+    later start another run. Without a rule, a run starts at each change in the `run` column, and
+    without that column all rows are one run. Starts are found on all rows before [rows] keep is
+    applied, so that leaving out rows splits no run in two.
 
     Args:
         table: The table, with the rule in its column map.
@@ -53,13 +57,14 @@ def separate_runs(table: RigTable, label: str) -> Runs:
 
 
 def run_starts(table: RigTable) -> tuple[NDArray[np.bool_], tuple[str, ...], str]:
-    """Find where a run begins, but for the first row, on all rows.
+    """Mark the rows at which a run begins, among all rows; the first row is not marked.
 
     Args:
         table: The table, whose column map has another rule than `each_row`.
 
     Returns:
-        Whether each row begins a run, the columns whose changes do, and the rule in words.
+        Whether a run begins at each row, shape (n,); headers of the columns whose changes begin
+        runs; and the rule in words.
 
     Raises:
         DataError: As `separate_runs`.
@@ -136,6 +141,7 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
 
 
 def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
+    """Mark each row whose time is more than `gap` [s] after the last known time before it."""
     source = table.source_of("t")
     if source is None:
         problem = (
@@ -151,6 +157,10 @@ def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
 
 
 def _at_changes(table: RigTable, names: tuple[str, ...]) -> NDArray[np.bool_]:
+    """Mark each row at which a value in one of the columns differs from the row before it.
+
+    Empty cells are equal to each other.
+    """
     starts = np.zeros(len(table.raw), dtype=bool)
     for name in names:
         codes, _ = pd.factorize(table.raw.column(name))
@@ -159,4 +169,5 @@ def _at_changes(table: RigTable, names: tuple[str, ...]) -> NDArray[np.bool_]:
 
 
 def _shown(cell: object) -> str:
+    """Return a cell as text, numbers with six digits."""
     return f"{cell:g}" if isinstance(cell, (int, float, np.number)) else str(cell)

@@ -36,8 +36,8 @@ class SlipColumn:
 def slip(table: RigTable) -> SlipColumn:
     """Return the slip ratio: the given one if its definition is known, else from disc speeds.
 
-    A given slip ratio is used only if it is mapped or its definition is stated; otherwise the
-    `material` slip ratio is computed from disc speeds and radii if the table has the speeds.
+    A slip ratio without a definition is an error if the column map names it or there are no disc
+    speeds; else it is ignored, and the `material` slip ratio computed from the speeds and radii.
 
     Raises:
         DataError: The table has neither or one speed alone; the definition of a given slip ratio is
@@ -98,6 +98,11 @@ def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) 
 
 
 def _given_definition(table: RigTable) -> SlipDefinition | None:
+    """Return the slip definition by the column map or by a column of the table; None without both.
+
+    Raises:
+        DataError: The column has two definitions, or another one than the column map.
+    """
     mapped = table.columns.columns.get("slip_ratio")
     stated = mapped.definition if mapped else None
     column = table.source_of("slip_definition")
@@ -127,6 +132,10 @@ def _given_definition(table: RigTable) -> SlipDefinition | None:
 def _given_slip(
     table: RigTable, given: MappedColumn, definition: SlipDefinition | None, *, speeds: bool
 ) -> SlipColumn:
+    """Return the slip ratio in the table; raise if its definition is unknown or a value impossible.
+
+    `speeds` tells whether the table also has disc speeds, which are then noted as not used.
+    """
     if definition is None:
         raise table.raw.fault(
             f"the definition of the slip ratio is not known; state in {table.columns.stated_in} "
@@ -142,7 +151,10 @@ def _given_slip(
 
 
 def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition) -> None:
-    # Noise may put a measured slip ratio past its limit: only values beyond a margin are errors.
+    """Raise if a slip ratio is beyond the range of its definition by more than `_SLIP_NOISE`.
+
+    Noise may put a measured slip ratio past its limit.
+    """
     inner = np.sign(ratio) * np.maximum(np.abs(ratio) - _SLIP_NOISE, 0)
     table.require(
         "slip_ratio",
@@ -156,6 +168,10 @@ def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition)
 
 
 def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipColumn:
+    """Compute the `material` slip ratio from the rim speeds; raise where the leg disc stands still.
+
+    `unused` is a slip ratio in the table that is ignored, for the note.
+    """
     speed_leg = table.si("omega_leg") * table.constant_or_column("radius_leg")
     speed_ground = table.si("omega_ground") * table.constant_or_column("radius_ground")
     ratio = slip_ratio(speed_leg, speed_ground, SlipDefinition.MATERIAL)

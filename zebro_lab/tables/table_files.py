@@ -12,6 +12,7 @@ from zebro_lab.tables.raw_table import RawTable
 
 
 def _read_parquet(path: Path) -> RawTable:
+    """Read a Parquet file; raise `DataError` if pyarrow is not installed."""
     try:
         from zebro_lab.tables.parquet_files import read_parquet_file
     except ImportError as error:

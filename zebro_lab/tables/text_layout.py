@@ -72,7 +72,7 @@ class _Candidate:
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
-        """Whether it has a header; several columns; the share of values."""
+        """Key to compare candidates: whether it has a header, several columns, share of values."""
         return self.header is not None, self.data.width > 1, self.data.values
 
 
@@ -106,6 +106,7 @@ def find_layout(lines: Sequence[Line], *, bare: bool = False) -> TextLayout:
 
 
 def _with_units(header: Header, settings: Sequence[Sequence[str]]) -> Header:
+    """Add the units that settings above the header state; those in the header itself prevail."""
     units = stated_units(settings, header.names)
     if not units:
         return header
@@ -133,7 +134,7 @@ def uneven_row(cells: int, names: int, advice: str) -> str:
 
 
 def _require_no_receipt(lines: Sequence[Line]) -> None:
-    """Raise if a serial monitor put the time of receipt before each line."""
+    """Raise if a serial monitor put the time of receipt before more than half of the lines."""
     found = [match[0] for _, line in lines if (match := _RECEIPT.match(line))]
     if len(found) <= len(lines) // 2:
         return
@@ -171,6 +172,7 @@ def _candidate(separator: str, body: Sequence[Line], comments: Sequence[Line]) -
 
 
 def _comment_cells(line: str, separator: str) -> list[str]:
+    """Split a comment that may be a header at the separator, or at blanks if it does not occur."""
     cells = split_line(line, separator)
     return cells if len(cells) > 1 else split_line(line, BLANKS)
 
@@ -197,7 +199,11 @@ def _words(line: str, width: int) -> list[str]:
 
 
 def _only_best(candidates: Sequence[_Candidate]) -> _Candidate:
-    """Return the candidate of the highest rank; tabs and blanks both separate the same cells."""
+    """Return the candidate of the highest rank; raise if another separator has the same rank.
+
+    It is no tie if there is no header or only one column, or if the other separator is blanks,
+    which also separate what tabs do.
+    """
     best = max(candidates, key=lambda each: each.rank)
     same = [each for each in candidates if each.rank == best.rank and each is not best]
     if best.rank[:2] == (True, True):
@@ -208,11 +214,17 @@ def _only_best(candidates: Sequence[_Candidate]) -> _Candidate:
 
 
 def _several(separators: Sequence[str]) -> DataError:
+    """Return an error that each of several separators gives a table."""
     names = " or by ".join(SEPARATORS[each] for each in separators)
     return DataError(f"cells may be separated by {names}; save the file with one of these only")
 
 
 def _no_header(best: _Candidate, body: Sequence[Line]) -> DataError:
+    """Return an error that says why no header was found, and how to mend that.
+
+    A table with a name at the start of each line is transposed; two rows may be the header; the
+    first line may be numbers; or the row above the numbers has another number of cells.
+    """
     data = best.data
     if data.first == 0 and _is_transposed(best.rows):
         return DataError(
@@ -248,6 +260,7 @@ def _is_transposed(rows: Sequence[Sequence[str]]) -> bool:
 
 
 def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> TextLayout:
+    """Return the layout of a candidate with a header, and check that its rows fit the header."""
     rows = best.rows[data.first : data.stop]
     widest = max(range(len(rows)), key=lambda i: len(rows[i]))
     cells = [cell for row in rows for cell in row]

@@ -34,6 +34,7 @@ def runs(data: DataDir, output: Output = TEXT) -> None:
 
 
 def _in_words(run: "ListedRun") -> str:
+    """Format a run as one line: name, state, duration, samples and source."""
     lasted = "-" if run.duration is None else f"{run.duration:.1f} s"
     samples = ", ".join(f"{count} {topic}" for topic, count in run.samples.items()) or "-"
     source = run.source or "-"
@@ -42,6 +43,7 @@ def _in_words(run: "ListedRun") -> str:
 
 
 def _in_numbers(run: "ListedRun") -> dict[str, object]:
+    """Return a run as an entry of the JSON document."""
     return {
         "name": run.name,
         "state": run.state,
@@ -72,6 +74,7 @@ def exclude(run: RunFolder, why: Why = None, undo: Undo = False, output: Output 
 
 
 def _print_excluded(run: Path, manifest: "RunManifest", output: Output) -> None:
+    """Print the exclusion of a run as a JSON document, where that is asked for."""
     simulated = is_simulated(manifest.source)
     content = {"folder": run, "simulated": simulated, "excluded": manifest.excluded}
     output.document("exclude", content)

@@ -24,9 +24,10 @@ _T = TypeVar("_T")
 
 
 def content_hash(file: Path) -> str:
-    """Compute the SHA-256 of a file, of the unpacked content for `.gz`.
+    """Compute the SHA-256 of a file's content, which is the same for a table and its gzipped copy.
 
-    A `.gz` that is damaged or too large for a table is hashed as it is: its reader reports it.
+    A file named `.gz` is unpacked first. If it is damaged, or larger than a table may be, its
+    compressed bytes are hashed instead of raising: the error is reported where the file is read.
     """
     if file.name.lower().endswith(".gz"):
         with suppress(DataError):
@@ -48,7 +49,8 @@ def run_keys(forces: Sequence[Array], run: NDArray[np.intp], n_runs: int) -> tup
 
     The key is a hash of the forces, independent of names and slip definitions: two recordings never
     have exactly equal forces. The key of a run with fewer than `FEWEST` samples or constant forces
-    is the hash of all forces of the table, with the run's index.
+    is the hash of all forces of the table, with the run's index, which only the same run of an
+    equal table has.
 
     Args:
         forces: Columns of forces, each of shape (n,) [N].
@@ -82,12 +84,13 @@ def first_of_each(
     key: Callable[[_T], Hashable],
     is_copy: Callable[[_T], bool] = lambda _: False,
 ) -> tuple[list[_T], list[tuple[_T, _T]]]:
-    """Remove duplicates, keeping the first item of each key, of which `is_copy` is not true if any.
+    """Remove duplicates: of the items of one key, keep the first that is no copy, else the first.
 
     Args:
         items: Items in order; the same object again is dropped without a pair.
         key: Returns the key by which two items are duplicates.
-        is_copy: Returns whether an item is rather the duplicate; the kept one takes its place.
+        is_copy: Returns whether an item is a copy rather than the original, as its name may tell.
+            The item kept stands where the first of its key stood.
 
     Returns:
         The items kept, and pairs (duplicate, item kept), both in order.

@@ -48,6 +48,7 @@ class DataSource:
         return rig_columns(self.path)
 
     def _columns_of_run(self) -> Path | None:
+        """Return the nearest `columns.toml` from the run folder up to the root; None if none is."""
         folder = self.path
         while True:
             if (folder / COLUMNS_FILE).is_file():
@@ -64,6 +65,7 @@ def columns_above_roots(sources: Sequence[DataSource], named: Path | None) -> tu
         sources: The data; the same of several tables of one folder is said once.
         named: The `columns.toml` that is named; None if none is.
     """
+    # reversed twice: the first of each folder is kept, in the order of `sources`
     first = {source.path.parent: source for source in reversed(sources) if source.path.is_file()}
     return tuple(
         line
@@ -97,6 +99,12 @@ def find_sources(paths: Sequence[Path]) -> list[DataSource]:
 
 
 def _sources_at(path: Path) -> list[DataSource]:
+    """Return the data at one path: all below a folder, the folder of a run's file, or a table.
+
+    Raises:
+        NotFound: The path does not exist.
+        DataError: It is a folder without data.
+    """
     if not path.exists():
         raise NotFound(f"{path}: no such file or folder; the working folder is {Path.cwd()}")
     if path.is_dir():
@@ -138,6 +146,7 @@ def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
 
 
 def _why_empty(folder: Path) -> str:
+    """Return why a folder holds no data: it is a result of a command, or has no tables and runs."""
     if (folder / CALIBRATION_FILE).is_file():
         return "is the result of a calibration; give the data that the calibration was made from"
     if (kind := result_kind(folder)) is not None:

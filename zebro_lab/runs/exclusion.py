@@ -56,6 +56,13 @@ def past_reasons(manifest: RunManifest) -> tuple[str, ...]:
 
 
 def _written(folder: Path, did: str, why: str) -> RunManifest:
+    """Write an exclusion, or its undoing, to the manifest, and return that.
+
+    Args:
+        folder: The run folder.
+        did: `EXCLUDED` or `UNDONE`.
+        why: The reason, which is kept with the present time.
+    """
     manifest = read_manifest(folder)
     entry = {"did": did, "why": why, "at": datetime.now(UTC).isoformat(timespec="seconds")}
     manifest = replace(

@@ -189,6 +189,10 @@ def require_ended(folder: Path) -> None:
 
 
 def _require_constants(manifest: RunManifest, file: Path) -> None:
+    """Raise `DataError` if a zero offset is not finite, or a radius missing or not positive.
+
+    A zero offset that is missing counts as 0.
+    """
     for name in ("zero_normal", "zero_traction"):
         if not np.isfinite(manifest.constants.get(name, 0.0)):
             raise DataError(f"is unknown; enter the zero in N (constants.{name})", file=file,
@@ -221,6 +225,7 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
 
 
 def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) -> str:
+    """Return a note on a damaged log: how many samples were read, and of how many if known."""
     recorded = manifest.streams.get(_BOARD_TOPIC)
     of_all = f" of {recorded}" if recorded else ""
     return f"{folder.name}: {LOG_FILE} is incomplete ({damage}); {count}{of_all} samples were read"
@@ -240,6 +245,7 @@ def run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:
 
 
 def _slug(label: str) -> str:
+    """Return a label for a file name: what is no letter, digit, "_", "." or "-" becomes "-"."""
     return re.sub(r"[^\w.-]+", "-", label).strip("-.") or "run"
 
 

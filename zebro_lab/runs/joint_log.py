@@ -28,7 +28,8 @@ def joined_readings(table: RawTable, turns: Mapping[str, float]) -> RawTable:
     """Return one row of all legs for each reading of the leg that has the fewest.
 
     Readings of the other legs are interpolated in time, between two of the same leg. A table with a
-    row of all legs is returned as it is: what is missing in others is a fault of theirs.
+    row of all legs is returned as it is: what is missing in others is a fault of theirs. So is one
+    in which a leg has fewer than two readings, between which nothing can be interpolated.
 
     Args:
         table: A row per message, `t` [s], NaN where a message does not hold a leg.
@@ -61,7 +62,15 @@ def joined_readings(table: RawTable, turns: Mapping[str, float]) -> RawTable:
 
 
 def _require_near(table: RawTable, name: str, t: Array, at: Array) -> None:
-    """Check that the times of rows lie in no gap of a leg's times `t` [s]."""
+    """Check that no row falls into a gap of a leg's readings, or raise `DataError`.
+
+    Args:
+        table: The table, for the message.
+        name: Header of the leg.
+        t: Times of the leg's readings, which must increase, shape (m,) [s].
+        at: Times of the rows, shape (n,) [s]; the two readings around each may be at most `WIDEST`
+            median steps apart.
+    """
     steps = np.diff(t)
     if np.any(steps <= 0):
         raise DataError(
@@ -83,7 +92,18 @@ def _require_near(table: RawTable, name: str, t: Array, at: Array) -> None:
 
 
 def _unwrapped(table: RawTable, name: str, values: Array, turn: float) -> Array:
-    """Return a leg's readings without jumps by a turn, which are refused where ambiguous."""
+    """Unwrap a leg's angles: remove jumps by a turn, so that they can be interpolated.
+
+    Args:
+        table: The table, for the message.
+        name: Header of the leg.
+        values: Angles of its readings in order, shape (m,), in the unit of the column.
+        turn: A whole turn in that unit.
+
+    Raises:
+        DataError: There are jumps of over half a turn to remove, and after that a step of over a
+            quarter of a turn is left: it might as well be one in the other direction.
+    """
     whole = np.unwrap(values, period=turn)
     wrapped = np.abs(np.diff(values)).max() > turn / 2
     if wrapped and np.abs(np.diff(whole)).max() > turn / 4:
@@ -258,6 +278,10 @@ def _positions_of(state: Any) -> SimpleNamespace:
 def _columns(
     t: Collection[float], rows: Collection[Mapping[str, float]]
 ) -> Mapping[str, pd.Series]:
+    """Return a column of times and one for each joint, NaN where a message lacks the joint.
+
+    A joint that is named `t` becomes "joint t".
+    """
     columns = {"t": pd.Series(t, dtype=float)}
     for name in dict.fromkeys(name for row in rows for name in row):
         header = "joint t" if name == "t" else name
@@ -266,6 +290,7 @@ def _columns(
 
 
 def _told(legs: Mapping[str, int]) -> tuple[str, ...]:
+    """Return a note on which joint was taken for which leg; none if all are named `leg_N`."""
     if all(name == f"leg_{leg}" for name, leg in legs.items()):
         return ()
     listed = ", ".join(f"{leg} {name}" for name, leg in sorted(legs.items(), key=lambda x: x[1]))
@@ -291,6 +316,7 @@ def legs_of_joints(names: Iterable[str]) -> dict[str, int]:
 
 
 def _leg(name: str) -> int | None:
+    """Return the leg, 1 to 6, that a joint's name states by place, else by number; else None."""
     words = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name)
     place = _place([word.lower() for word in words]) or _short_place(words)
     if place is not None:
@@ -303,12 +329,17 @@ def _leg(name: str) -> int | None:
 
 
 def _place(words: list[str]) -> tuple[int, int] | None:
+    """Return row (0 front to 2 rear) and side (0 left, 1 right) by words such as "front", "left".
+
+    None unless the words, in lower case, tell one row and one side.
+    """
     rows = {_ROWS[_WORDS[word]] for word in words if word in _WORDS}
     sides = {_SIDES[word] for word in words if word in _SIDES}
     return (rows.pop(), sides.pop()) if len(rows) == len(sides) == 1 else None
 
 
 def _short_place(words: list[str]) -> tuple[int, int] | None:
+    """Return row and side, as `_place`, by one word of two letters such as LF or RM; else None."""
     found = [match for word in words if (match := _SHORT.fullmatch(word.upper()))]
     if len(found) != 1:
         return None

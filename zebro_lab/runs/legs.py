@@ -126,6 +126,7 @@ def require_used(topics: Sequence[str], used: Sequence[str | None]) -> None:
 
 
 def _table_of(path: Path) -> Path:
+    """Return the table at a path: the path itself, or the `path.csv` of a walk folder."""
     recover(path)
     if not path.is_dir():
         return path

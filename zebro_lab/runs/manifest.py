@@ -58,7 +58,7 @@ def software_version() -> dict[str, str]:
 
 
 def _moment(text: str) -> str:
-    """Return a date and time in ISO 8601; ValueError without a time zone, or outside the years."""
+    """Return a date and time in ISO 8601; ValueError without a time zone or beyond year 9999."""
     moment = datetime.fromisoformat(text)
     try:
         moment.astimezone(UTC)
@@ -103,8 +103,8 @@ class RunManifest:
         counters: Numbers of samples received, lost, damaged and so on, and of those that the
             recorder dropped, by stream.
         clocks: Attributes of `ClockFit` of each device's clock, by stream, for devices that send
-            their time: time of the run = offset + (1 + drift) device time. In half of the intervals
-            of 50 ms even the quickest sample arrives later than the fastest by more than the delay.
+            their time: time of the run = offset + (1 + drift) device time. The delay is the median
+            time by which the quickest sample of each interval of 50 ms arrives later than that.
         duration: Requested duration ("asked") and the time of the run from which it counts
             ("from"), when every stream had sent its first sample; empty for a run without a set
             duration [s].
@@ -224,6 +224,10 @@ _CHECK: Final = TypeAdapter(RunManifest)
 
 
 def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
+    """Check the entries of a `run.json` and return them as a manifest; raise `DataError` otherwise.
+
+    A null is taken as not given, so that a required entry is missing; in `constants` it is NaN.
+    """
     if document.get("schema_version") != SCHEMA_VERSION:
         raise DataError(
             f"'schema_version' is {in_json(document, 'schema_version')}, expected "
@@ -257,7 +261,7 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
 
 
 def _without_unknown(value: Any) -> Any:
-    """Return a value without the nulls in its tables: of unknown numbers."""
+    """Return a value without the entries that are null, in nested tables too."""
     if isinstance(value, dict):
         return {key: _without_unknown(each) for key, each in value.items() if each is not None}
     return [_without_unknown(each) for each in value] if isinstance(value, list) else value

@@ -69,6 +69,7 @@ def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
     if len(t) <= 2 * columns:
         return t, values
     length = len(t) // columns
+    # argmin and argmax would choose a NaN wherever there is one, and hide the extremes
     parts = np.nan_to_num(values[: length * columns]).reshape(columns, length)
     first = np.arange(columns) * length
     chosen = np.sort(np.stack([parts.argmin(axis=1), parts.argmax(axis=1)]) + first, axis=0)
@@ -77,6 +78,7 @@ def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
 
 
 def _draw_panel(axes: Axes, panel: Panel) -> None:
+    """Draw the curves of a panel without lines across gaps, and a red bar over each gap."""
     for (name, line), colour in zip(panel.lines.items(), CYCLE, strict=False):
         t, values = extremes(panel.t, np.asarray(line, dtype=float), _COLUMNS)
         axes.plot(*_broken(t, values, panel.gaps), color=colour, lw=0.7, label=name)
@@ -110,6 +112,10 @@ def _broken(t: Array, values: Array, gaps: Array) -> tuple[Array, Array]:
 
 
 def _list_events(axes: Axes, events: Sequence[Event]) -> None:
+    """List the events of a run by rows, each with a mark at its time; warnings are red.
+
+    At most `_MOST_EVENTS` are listed (`_chosen`), texts of late events to the left of the mark.
+    """
     shown = _chosen(events)
     middle = (events[0].t + events[-1].t) / 2
     for row, event in enumerate(shown):

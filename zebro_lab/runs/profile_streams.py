@@ -75,7 +75,7 @@ def imu_stream(profile: ImuProfile) -> RawStream:
 
 
 def rig_streams(profile: RigProfile) -> dict[str, RawStream]:
-    """Describe `board`, `drives` and `load_cell` of a slip rig, as it has them."""
+    """Describe those of the streams `board`, `drives` and `load_cell` that a slip rig has."""
     streams: dict[str, RawStream] = {}
     if profile.board is not None:
         streams["board"] = _board(profile.board)
@@ -87,6 +87,7 @@ def rig_streams(profile: RigProfile) -> dict[str, RawStream]:
 
 
 def _board(profile: BoardProfile) -> RawStream:
+    """Describe the raw samples of the rig's board, which measures forces and speeds."""
     return RawStream(VALUES_NAME if profile.link == "table" else COUNTS_NAME, {
         "counts": "normal force, traction force, speed of leg disc, speed of ground disc",
         "unit": f"1/{profile.counts_per_force:g} N (signs {profile.normal_sign}, "
@@ -95,6 +96,7 @@ def _board(profile: BoardProfile) -> RawStream:
 
 
 def _drives(profile: DriveProfile) -> RawStream:
+    """Describe the raw samples of the motor drives of both discs."""
     discs = {"leg_disc": profile.leg, "ground_disc": profile.ground}
     return RawStream(VALUES_NAME, {
         "counts": "motor position, motor velocity",
@@ -107,6 +109,7 @@ def _drives(profile: DriveProfile) -> RawStream:
 
 
 def _load_cell(profile: LoadCellProfile) -> RawStream:
+    """Describe the raw samples of the load cell, and which of its axes are the two forces."""
     return RawStream(COUNTS_NAME, {
         "counts": "Fx, Fy, Fz, Tx, Ty, Tz",
         "unit": f"1/{profile.counts_per_force:g} N for the forces",
@@ -116,4 +119,5 @@ def _load_cell(profile: LoadCellProfile) -> RawStream:
 
 
 def _axis(sign: int, index: int) -> str:
+    """Return the name of a load cell's axis with its sign, such as "-Fz" for index 2."""
     return f"{'+' if sign > 0 else '-'}F{'xyz'[index]}"

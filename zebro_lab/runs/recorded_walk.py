@@ -122,6 +122,7 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
 
 
 def _angles(stream: SampleColumns, profile: Path) -> dict[str, Array]:
+    """Decode `t` [s] and `theta1` … [rad] of the profile's legs, at increasing times only."""
     with _decoding(profile):
         angles = decode_angles(load_leg_profile(str(profile)), stream)
     t, later = _increasing_times(stream)
@@ -139,7 +140,7 @@ def _decoding(profile: Path) -> Iterator[None]:
 
 
 def _increasing_times(stream: SampleColumns) -> tuple[Array, NDArray[np.bool_]]:
-    """Return times of samples that are later than all before [s], and which these are."""
+    """Return the times of the samples that are later than all before [s], and a mask of these."""
     t = sample_times(stream)
     later = np.r_[True, np.diff(np.maximum.accumulate(t)) > 0]
     return t[later], later

@@ -226,6 +226,11 @@ def find_gaps(t: Array, sequence: NDArray[np.int64] | None = None) -> Array:
 def _panels(
     folder: Path, manifest: RunManifest, topic: str, stream: SampleColumns
 ) -> Iterator[Panel]:
+    """Decode a stream to panels, one per quantity; raise `DataError` if the profile does not fit.
+
+    Gaps are found from times and sequence numbers of the whole stream; from the times alone for a
+    part of it, such as the speed of one disc.
+    """
     name = topic.split("/")[1]
     source = manifest.sources.get(name, manifest.source)
     t = sample_times(stream)
@@ -240,6 +245,7 @@ def _panels(
 
 
 def _legs(profile: LegProfile, t: Array, stream: SampleColumns) -> Curves:
+    """Yield the counts of each leg as they were sent, and its unwrapped angle [rad]."""
     angles = decode_angles(profile, stream)
     counts = {f"leg {leg}": stream.counts[:, i] for i, leg in enumerate(profile.legs)}
     unit = f"1/{profile.counts_per_revolution} turn"
@@ -249,6 +255,7 @@ def _legs(profile: LegProfile, t: Array, stream: SampleColumns) -> Curves:
 
 
 def _imu(profile: ImuProfile, t: Array, stream: SampleColumns) -> Curves:
+    """Yield orientation [deg], angular rate [rad/s] and specific force [m/s^2] of an IMU."""
     seen = decode_orientation(profile, stream)
     angles = {"roll": seen.roll, "pitch": seen.pitch, "yaw": seen.yaw}
     yield "orientation", "deg", t, {name: np.degrees(angle) for name, angle in angles.items()}
@@ -257,6 +264,7 @@ def _imu(profile: ImuProfile, t: Array, stream: SampleColumns) -> Curves:
 
 
 def _rig(profile: RigProfile, name: str, t: Array, stream: SampleColumns) -> Curves:
+    """Yield speeds of the discs [rad/s] or forces [N] of one stream of the slip rig."""
     if name == "drives" and profile.drives is not None:
         for disc, drive in (("leg", profile.drives.leg), ("ground", profile.drives.ground)):
             own = stream.channel == drive.node
@@ -271,10 +279,12 @@ def _rig(profile: RigProfile, name: str, t: Array, stream: SampleColumns) -> Cur
 
 
 def _forces(forces: Forces) -> Mapping[str, Array]:
+    """Return normal and traction force by the names of their curves, shape (n,) [N]."""
     return {"normal": forces.normal, "traction": forces.traction}
 
 
 def _events(log: Path, manifest: RunManifest) -> tuple[Event, ...]:
+    """Read the events in the log of a run, at times since its start."""
     start = epoch_ns(manifest.began)
     messages, _ = read_messages(log, (LOG,))
     return tuple(

@@ -77,6 +77,7 @@ def derive_table(
 
 
 def _of_board(profile: BoardProfile, board: SampleColumns) -> SlipRigTable:
+    """Return a row for each sample of a board, which measures speeds and forces together."""
     forces, speeds = decode_board(profile, board)
     return SlipRigTable(
         sample_times(board), speeds.leg, speeds.ground, forces.normal, forces.traction
@@ -86,6 +87,10 @@ def _of_board(profile: BoardProfile, board: SampleColumns) -> SlipRigTable:
 def _of_two(
     drives: DriveProfile, cell: LoadCellProfile, speeds: SampleColumns, forces: SampleColumns
 ) -> SlipRigTable:
+    """Combine the samples of drives and load cell, by averages or interpolation.
+
+    The choice and its reason are those of `derive_table`.
+    """
     t = sample_times(forces)
     decoded = decode_forces(cell, forces)
     lateral, _ = decode_further_loads(cell, forces)
@@ -127,12 +132,14 @@ def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp
 
 
 def _require(streams: Mapping[str, SampleColumns], name: str, folder: Path) -> SampleColumns:
+    """Return the raw samples of a stream; raise `DataError` if the log has none."""
     if raw_topic(name) not in streams:
         raise DataError(f"the log holds no samples of topic {raw_topic(name)}", file=folder)
     return streams[raw_topic(name)]
 
 
 def _increasing(table: SlipRigTable, run: str) -> tuple[SlipRigTable, tuple[str, ...]]:
+    """Drop rows whose time is not later than all before, with a note on how many these are."""
     later = np.r_[True, np.diff(np.maximum.accumulate(table.t)) > 0]
     left_out = int(np.sum(~later))
     note = f"{run}: {left_out} samples are ignored, because their time does not increase"

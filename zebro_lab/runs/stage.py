@@ -46,6 +46,7 @@ def list_runs(data: Path) -> list[ListedRun]:
 
 
 def _listed(folder: Path) -> ListedRun:
+    """Return the entry of a run; of a run that cannot be read its name and the error."""
     try:
         manifest = read_manifest(folder)
         state = run_state(folder, manifest)
@@ -69,6 +70,7 @@ def _with_exclusions(state: str, manifest: RunManifest) -> str:
 
 
 def _lasted(manifest: RunManifest) -> float | None:
+    """Return the time from start to stop by the manifest [s]; None without a stop."""
     if manifest.stop is None:
         return None
     return (datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds()

@@ -88,6 +88,10 @@ def _write_log(
     event: str,
     warnings: Sequence[str],
 ) -> None:
+    """Write samples and events to the log of a run.
+
+    Blocks of `_BLOCK` samples of all streams are written in the order of time, as while recording.
+    """
     blocks = [
         (name, columns[first : first + _BLOCK])
         for name, columns in samples.items()

@@ -55,4 +55,5 @@ def read_arrays(
 
 
 def _size(archive: Any, name: str) -> int:
+    """Return the unpacked size of an array in an open .npz archive [bytes]."""
     return archive.zip.getinfo(f"{name}.npy").file_size

@@ -127,6 +127,10 @@ def sync_folder(folder: Path) -> None:
 
 
 def _require_empty(folder: Path, target: object) -> None:
+    """Raise `AlreadyExists` if a path is a file or a folder with content.
+
+    `target` is the path as the user named it, for the message.
+    """
     if folder.exists() and not folder.is_dir():
         raise AlreadyExists(f"{target} is a file, expected a new folder; choose another name")
     if folder.is_dir() and any(folder.iterdir()):
@@ -140,7 +144,8 @@ _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 def uninterrupted() -> Iterator[None]:
     """Put off SIGINT and SIGTERM until the end of the body.
 
-    Also around imports of C extensions: an exception within their initialisation can abort Python.
+    Imports of C extensions are put into such a body too, since an exception such as
+    KeyboardInterrupt within their initialisation can abort Python.
     Python runs handlers of signals in the main thread alone; in other threads, and of signals
     without a handler, nothing is done.
     """

@@ -89,6 +89,7 @@ def json_text(document: object) -> str:
 
 
 def _plain(value: Any) -> Any:
+    """Return a value as JSON can hold it, nested ones too, as `json_text` says."""
     if isinstance(value, str | Path):
         return str(value).encode("utf-8", "backslashreplace").decode("utf-8")
     if isinstance(value, Mapping):

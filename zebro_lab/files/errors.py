@@ -145,5 +145,6 @@ class RecordingError(ZebroLabError, OSError):
 
 
 def _one_line(place: str, problem: str) -> str:
+    """Join place and problem to one line without control characters, of at most `LONGEST`."""
     # Messages of other libraries, quoted in ours, often have several lines.
     return shortened(shown(" ".join(f"{place}: {problem}".split() if place else problem.split())))

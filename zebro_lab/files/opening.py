@@ -181,6 +181,7 @@ def parsing(
 
 
 def _descriptor(path: Path, advice: str, fault: Fault) -> int:
+    """Open a regular file without blocking, and return its descriptor; convert the errors."""
     try:
         _require_regular(path.stat().st_mode, path, fault)  # before it is opened: see above
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -200,6 +201,7 @@ def _descriptor(path: Path, advice: str, fault: Fault) -> int:
 
 
 def _require_regular(mode: int, path: Path, fault: Fault) -> None:
+    """Raise `fault` if the mode of a path (`st_mode`) is not that of a regular file."""
     if not stat.S_ISREG(mode):
         kind = next((name for test, name in _KINDS if test(mode)), "something else")
         raise fault(f"is {kind}; expected a regular file", file=path)

@@ -113,6 +113,10 @@ def _recover_locked(folder: Path) -> None:
 
 
 def _swap(folder: Path, draft: Path, owned: Collection[str]) -> None:
+    """Move the old folder aside and the draft to its place; move the old one back if that fails.
+
+    In between, files that the user wrote since the draft was filled are linked into it.
+    """
     previous = previous_of(folder)
     if folder.exists():
         folder.rename(previous)
@@ -151,10 +155,12 @@ def _carry(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> No
 
 
 def _is_folder(path: Path) -> bool:
+    """Return whether a path is a folder and no link to one."""
     return path.is_dir() and not path.is_symlink()
 
 
 def _link(file: Path, target: Path) -> None:
+    """Hard-link a file, or copy it where links are not possible, unless the target is as new."""
     if os.path.lexists(target):
         if target.lstat().st_mtime_ns >= file.lstat().st_mtime_ns:
             return

@@ -216,7 +216,7 @@ def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
 def _void(folder: Path, kind: str) -> frozenset[str]:
     """List the files of an invalidated result of a kind in a subfolder, relative to the subfolder.
 
-    None if one of them was changed, or if the subfolder has no result of this kind.
+    Empty if one of them was changed, or if the subfolder has no result of this kind.
     """
     try:
         return _owned(folder, ResultKind(kind, kind, ()))
@@ -225,6 +225,7 @@ def _void(folder: Path, kind: str) -> frozenset[str]:
 
 
 def _manifest_of(folder: Path) -> Mapping[str, Any]:
+    """Read the manifest of a result folder; raise `AlreadyExists` if it cannot be read."""
     try:
         return read_json_object(folder / MANIFEST, of="result folder")
     except ZebroLabError as error:
@@ -237,6 +238,7 @@ def _manifest_of(folder: Path) -> Mapping[str, Any]:
 def _require_free(
     folder: Path, names: Collection[str], kind: ResultKind, owned: Collection[str]
 ) -> None:
+    """Raise `AlreadyExists` if one of the names exists in the folder and is not in `owned`."""
     for name in names:
         if name not in owned and os.path.lexists(folder / name):
             raise AlreadyExists(

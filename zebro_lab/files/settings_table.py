@@ -95,6 +95,7 @@ class SettingsTable(TomlTable):
             raise self.fault(str(error), key) from error
 
     def _to_si(self, key: str, found: object, unit: str, usual: float) -> float:
+        """Convert a number, or a text with a unit, to SI; raise an error that names the key."""
         if isinstance(found, bool) or not isinstance(found, (int, float, str)):
             named = "" if unit == _NO_UNIT else f" in {unit} or a text such as '1 {unit}'"
             raise self.fault(f"found {found!r}; expected a number{named}", key)
@@ -105,6 +106,7 @@ class SettingsTable(TomlTable):
 
 
 def _with_unit(number: float, unit: str) -> str:
+    """Format a number with its unit, if it has one, for a message."""
     return f"{number:g}" if unit == _NO_UNIT else f"{number:g} {unit}"
 
 
@@ -156,6 +158,7 @@ def inline_table(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _fill(table: MutableMapping[str, Any], values: Mapping[str, Any]) -> None:
+    """Write values into a table of a TOML document in place; tables in it keep their other keys."""
     for key, value in values.items():
         inner = table.get(key)
         if isinstance(value, Mapping) and isinstance(inner, MutableMapping):

@@ -89,6 +89,15 @@ def require_overwritable(out: Path, kind: SingleFile, *, inputs: Sequence[Path] 
 
 
 def _require_ours(out: Path, file: Path, kind: SingleFile) -> None:
+    """Raise `AlreadyExists` unless an existing file is empty or has the marks of the command.
+
+    Nor may it be an output that the manifest beside it lists.
+
+    Args:
+        out: The file as named, for the message.
+        file: The file with links resolved.
+        kind: Kind of file that the command writes.
+    """
     if not file.is_file():
         raise AlreadyExists(f"{out} is not a regular file; choose another file with --out")
     with file.open("rb") as opened:

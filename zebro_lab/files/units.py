@@ -199,6 +199,7 @@ def is_unit_of(unit: str, si_unit: str) -> bool:
 
 @cache
 def _registry() -> "UnitRegistry":
+    """Return the unit registry of pint, with "turn" as another name of a revolution."""
     from pint import UnitRegistry  # takes 0.3 s, so imported only for conversion
 
     registry = UnitRegistry()
@@ -208,6 +209,13 @@ def _registry() -> "UnitRegistry":
 
 @cache
 def _in_root_units(unit: str) -> tuple[float, str]:
+    """Return the factor of a unit to pint's root units (m, g, s, rad), and their product as text.
+
+    Two units measure the same quantity if these texts are equal.
+
+    Raises:
+        UnitError: The unit is unknown.
+    """
     text = _MISREAD.get(unit.strip(), unit.strip())
     text = "dimensionless" if text.casefold() in _NO_UNIT else text
     registry = _registry()
@@ -240,4 +248,5 @@ def _respelled(unit: str) -> str:
 
 
 def _like(root_units: str) -> list[str]:
+    """Return common units with the same root units, as examples for a message."""
     return [unit for unit in _COMMON if _in_root_units(unit)[1] == root_units]

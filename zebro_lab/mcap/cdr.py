@@ -68,9 +68,11 @@ class CdrWriter:
         return HEADER + bytes(self._parts)
 
     def _align(self, size: int) -> None:
+        """Append zero bytes up to a multiple of `size` bytes, not counting the header."""
         self._parts += bytes(-len(self._parts) % size)
 
     def _packed(self, layout: str, size: int, value: int) -> Self:
+        """Append one number of `size` bytes, aligned, in a layout of the `struct` module."""
         self._align(size)
         self._parts += struct.pack(layout, value)
         return self
@@ -108,6 +110,7 @@ class CdrReader:
         return self._take(np.dtype(dtype), count) if count else np.empty(0, dtype)
 
     def _take(self, dtype: np.dtype[Any], count: int) -> NDArray[Any]:
+        """Read `count` numbers from the next multiple of their size on; the array is a view."""
         start = self._at + -self._at % dtype.itemsize
         self._at = start + count * dtype.itemsize
         if self._at > len(self._data):

@@ -107,6 +107,10 @@ def read_topic(
 def _stamped(
     messages: Iterable[LoggedMessage], parts: Callable[[LoggedMessage], Parts]
 ) -> Iterator[tuple[str, float, str, Any]]:
+    """Yield topic, time [s], type and content of each part of messages.
+
+    The time is the stamp of the header, or the log time where that is 0, which means not set.
+    """
     for message in messages:
         for topic, header, content in parts(message):
             stamp = header.stamp.sec + NANOSECOND * header.stamp.nanosec

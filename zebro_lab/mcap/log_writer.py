@@ -136,6 +136,7 @@ class LogWriter:
         return self._start_ns + round((host_time - self._start) * 1e9)
 
     def _register(self, topic: str, schema: str, metadata: Mapping[str, str] | None = None) -> None:
+        """Register the channel of a topic, and its schema where it is new."""
         if schema not in self._schemas:
             self._schemas[schema] = self._writer.register_schema(
                 schema, SchemaEncoding.ROS2, _SCHEMAS[schema].encode()
@@ -145,6 +146,7 @@ class LogWriter:
         )
 
     def _add(self, topic: str, stamp: int, message: bytes) -> None:
+        """Write a message with the next sequence number of its topic, at a stamp [ns]."""
         number = self._messages[topic]
         self._messages[topic] += 1
         self._writer.add_message(self._channels[topic], stamp, message, stamp, number)

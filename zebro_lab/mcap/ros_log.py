@@ -68,6 +68,7 @@ def read_messages(path: Path, types: Collection[str]) -> tuple[list[LoggedMessag
 
 
 def _read_bag(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], str | None]:
+    """Read messages of a bag with rosbags, as `read_messages` says."""
     bag_files(path)
     messages: list[LoggedMessage] = []
     problem = "cannot be read as a ROS bag"
@@ -83,6 +84,7 @@ def _read_bag(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], 
 
 
 def _reader(path: Path) -> "AnyReader":
+    """Return a reader of a bag, to be opened; raise `NotFound` if rosbags is not installed."""
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
@@ -97,6 +99,7 @@ def _reader(path: Path) -> "AnyReader":
 
 
 def _read_mcap(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], str | None]:
+    """Read messages of an MCAP log, as `read_messages` says."""
     factory = DecoderFactory()
 
     def decoder(schema: Schema) -> Decode | None:

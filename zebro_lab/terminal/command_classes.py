@@ -143,6 +143,7 @@ def _name(ctx: Any) -> str:
 
 
 def _options(command: Any, ctx: Any) -> list[str]:
+    """Return the names of all options of a command, such as `--out` and `-h`."""
     return [
         name
         for param in command.get_params(ctx)
@@ -152,6 +153,10 @@ def _options(command: Any, ctx: Any) -> list[str]:
 
 
 def _require_single(command: Any, ctx: Any, args: Sequence[str]) -> None:
+    """Raise `BadParameter` if an option that takes one value is given twice; flags may be repeated.
+
+    Flags with an opposite, such as `--x/--no-x`, may not.
+    """
     _, _, given = command.make_parser(ctx).parse_args(args=list(args))
     for param, times in Counter(given).items():
         is_plain_flag = getattr(param, "is_flag", False) and not param.secondary_opts
@@ -167,6 +172,7 @@ def _summary(text: str | None) -> str:
 
 
 def _print_version(wanted: bool) -> None:
+    """Print version and commit and exit, if `--version` is given."""
     if wanted:
         typer.echo(f"zebro-lab {version('zebro-lab')}, commit {software_commit()}")
         raise typer.Exit

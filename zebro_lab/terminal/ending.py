@@ -67,6 +67,7 @@ def _is_about_option(error: Exception) -> bool:
 
 
 def _is_known(error: Exception) -> bool:
+    """Return whether an error is one of the project's own."""
     # Importing the package of photographs here would slow --help down.
     tracking_error = getattr(sys.modules.get("tracking.errors"), "TrackingError", ())
     return isinstance(error, (ZebroLabError, ModelError, RigError, tracking_error))

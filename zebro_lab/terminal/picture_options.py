@@ -55,6 +55,7 @@ def parse_instants(text: str) -> Instants:
 
 
 def _seconds(text: str) -> float:
+    """Parse a finite number of seconds; raise `ValueError` for any other text."""
     value = float(text)
     if not abs(value) < float("inf"):
         raise ValueError(f"{text} is not finite")

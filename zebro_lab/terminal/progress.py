@@ -112,6 +112,7 @@ class _Bars:
         self._what = ""
 
     def show(self, what: str, fraction: float | None) -> None:
+        """Show the share of a step that is done; a new step completes the bar of the one before."""
         total = None if fraction is None else 1.0
         if what != self._what:
             if self._task is not None:
@@ -125,13 +126,14 @@ class _Silence:
     """Shows nothing."""
 
     def show(self, what: str, fraction: float | None) -> None:
-        pass
+        """Do nothing."""
 
 
 class _TimesColumn(ProgressColumn):
     """Times of a step: elapsed, and left by the same clock."""
 
     def render(self, task: Task) -> Text:
+        """Return elapsed and remaining time of a task as text."""
         elapsed = (task.finished_time if task.finished else task.elapsed) or 0.0
         return Text(shown_times(elapsed, None if task.total is None else task.completed))
 
@@ -153,6 +155,7 @@ def shown_times(elapsed: float, fraction: float | None) -> str:
 
 
 def _clock_time(seconds: float) -> str:
+    """Format a time as M:SS, or H:MM:SS from an hour on."""
     minutes, whole = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02}:{whole:02}" if hours else f"{minutes}:{whole:02}"

@@ -58,6 +58,7 @@ class Range:
         return " and ".join(self._parts())
 
     def _parts(self) -> Iterator[str]:
+        """Yield a description of each limit."""
         if self.least is not None:
             yield f"{self.least:g} or more"
         if self.above is not None:
@@ -134,6 +135,7 @@ def _fields(request: Any) -> list[tuple[Field[Any], Any]]:
 
 
 def _is_repeatable(hint: Any) -> bool:
+    """Return whether a type hint is `Annotated[tuple[X, ...], …]`: an option to be repeated."""
     of = get_args(hint)[0] if get_origin(hint) is Annotated else None
     return get_origin(of) is tuple and get_args(of)[1:] == (...,)
 
@@ -176,6 +178,10 @@ def value_types(kind: Any) -> Iterator[Any]:
 
 
 def _metavar(types: tuple[Any, ...]) -> str | None:
+    """Return what the help shows for a value of these types: choices, or a word for each type.
+
+    None if one of the types has no word in `METAVARS`; Typer chooses then.
+    """
     if get_origin(types[0]) is Literal:
         return "|".join(map(str, get_args(types[0])))
     names = [METAVARS.get(each) for each in types]
@@ -183,6 +189,11 @@ def _metavar(types: tuple[Any, ...]) -> str | None:
 
 
 def _check(limits: Range, then: Callable[..., Any] | None) -> Callable[[Any], Any]:
+    """Return a callback for Typer that raises `BadParameter` for a number outside the limits.
+
+    It checks each number of a list, and then calls `then`, the callback that the option had.
+    """
+
     def check(value: Any) -> Any:
         for number in value if isinstance(value, list | tuple) else (value,):
             if number is not None and not limits.hold(number):

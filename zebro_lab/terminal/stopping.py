@@ -84,6 +84,7 @@ def stoppable() -> Iterator[None]:
 
 
 def _restore(numbers: list[signal.Signals]) -> None:
+    """Give signals their default effect, which ends the process."""
     for number in numbers:
         signal.signal(number, signal.SIG_DFL)
 
@@ -107,5 +108,6 @@ def _ask_again(number: int) -> None:
 
 
 def _end(number: int) -> None:
+    """End the process without cleaning up, since its exceptions were caught twice."""
     say_in_time(str(StoppedBySignal(number)), err=True)
     os._exit(STOPPED)

@@ -90,6 +90,7 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
 
 
 def _tripod(request: GaitRequest, leg_arc: float) -> NamedGait:
+    """Construct the tripod gait; touchdown is at 50 deg and a cycle takes 2 s by default."""
     inner_down, outer_down = _angles(request.touchdown_deg, "touchdown_deg", default=50.0)
     inner_up, outer_up = _angles(request.liftoff_deg, "liftoff_deg")
     if inner_down is None:
@@ -107,6 +108,10 @@ def _tripod(request: GaitRequest, leg_arc: float) -> NamedGait:
 
 
 def _tripod_name(angles: TripodAngles, side: Direction) -> str:
+    """Return the name of a tripod with its steering factor and side, or "tripod, straight".
+
+    It is straight if the factor is 1 to 5e-4, and all legs touch down at one angle to 1e-3 rad.
+    """
     factor = angles.steering_factor
     if np.isclose(factor, 1.0, atol=5e-4) and np.isclose(
         angles.inner_touchdown, angles.outer_touchdown, atol=1e-3
@@ -116,16 +121,19 @@ def _tripod_name(angles: TripodAngles, side: Direction) -> str:
 
 
 def _suriana(request: GaitRequest, _: float) -> NamedGait:
+    """Construct Suriana's tripod, which turns by its stance times, with the thesis's angles."""
     times = _turn_times(request)
     reference = suriana_reference(*_stance(request, *_THESIS_TURN), direction=request.side, **times)
     return NamedGait(reference, _turn_name("suriana", request, times), request.side)
 
 
 def _maxplus(request: GaitRequest, _: float) -> NamedGait:
+    """Construct the tripod whose times max-plus algebra schedules."""
     return _scheduled(request, TRIPOD, "max-plus", _stance(request, *_THESIS_TURN))
 
 
 def _groups(request: GaitRequest, _: float) -> NamedGait:
+    """Construct a gait given by groups of legs, such as "{1,4} < {2,5} < {3,6}"."""
     try:
         gait = parse_gait(request.name, N_LEGS)
     except DomainError as error:
@@ -150,6 +158,7 @@ def _scheduled(
 def _turn_times(
     request: GaitRequest, *, ground: float = 0.8, flight: float = 0.8
 ) -> dict[str, float]:
+    """Return stance, flight and turn time as given, or by default `ground`, `flight` and 0 [s]."""
     return {
         "ground_time": _or(request.tau_ground, ground),
         "flight_time": _or(request.tau_flight, flight),
@@ -158,11 +167,13 @@ def _turn_times(
 
 
 def _turn_name(name: str, request: GaitRequest, times: Mapping[str, float]) -> str:
+    """Return the name of a gait with its turn time and side, or straight where that time is 0."""
     turn = times["turn_time"]
     return f"{name}, tau_p = {turn:g} s, {request.side}" if turn else f"{name}, straight"
 
 
 def _tetrapod(request: GaitRequest, _: float) -> NamedGait:
+    """Construct the tetrapod of the thesis; with an option of `_SCHEDULED`, schedule its groups."""
     touchdown, liftoff = _stance(request, 45.0, 135.0)  # 5-5-1 of the thesis
     cycle = _or(request.cycle, 3.0)
     if any(option in _SCHEDULED for option in request.given()):
@@ -176,6 +187,7 @@ def _tetrapod(request: GaitRequest, _: float) -> NamedGait:
 
 
 def _buehler(request: GaitRequest, _: float) -> NamedGait:
+    """Construct the Buehler clock, whose stance lasts half a cycle by default."""
     cycle = _or(request.cycle, 2.0)
     reference = buehler_reference(
         *_stance(request, 50.0, 118.0),
@@ -203,6 +215,7 @@ _GROUPS = _Kind((*_SCHEDULE, *_ANGLES), _groups)
 
 
 def _or(value: float | None, default: float) -> float:
+    """Return a value, or the default if it is None."""
     return default if value is None else value
 
 
@@ -256,6 +269,7 @@ def _angles(
 
 
 def _no_angle(option: str, text: str | None) -> SettingsError:
+    """Return an error that the text of an option is no angle."""
     return SettingsError(
         f"'{text}' is not an angle; expected degrees like 50; tripod: or INNER,OUTER like 50,46",
         key=_flag(option),
@@ -263,4 +277,5 @@ def _no_angle(option: str, text: str | None) -> SettingsError:
 
 
 def _flag(option: str) -> str:
+    """Return the option of a field as on a command line: `--tau-turn` of `tau_turn`."""
     return "--" + option.replace("_", "-")

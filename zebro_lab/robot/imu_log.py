@@ -25,7 +25,7 @@ IMU_UNITS: Final[Mapping[str, str]] = {
     **dict.fromkeys(_FORCE, "m/s^2"),
 }
 _NORM_TOLERANCE: Final = 0.05  # of a quaternion's length; files round to a few digits
-NEAR_G: Final = 0.15
+NEAR_G: Final = 0.15  # of a median specific force from 1, in multiples of g
 _MOST_NAMED: Final = 6  # columns that are not read
 LARGEST_TILT: Final = 1.0
 """Largest roll or pitch whose unit nobody states [rad]: a walking body stays upright."""
@@ -126,17 +126,22 @@ def _require_radians(table: RawTable, mapping: Columns, tilt: Array) -> None:
 
 
 def _numbers(table: RawTable, mapping: Columns, name: str) -> Array:
+    """Return a column in SI, finite throughout, shape (n,); raise `DataError` otherwise."""
     return mapping.numbers(table, name, what=f"{name} of the body", advice=_ADVICE)
 
 
 def _or_nan(table: RawTable, mapping: Columns, name: str) -> Array:
+    """Return a column as `_numbers`, or NaN throughout if the table lacks it, shape (n,)."""
     if mapping.has(table, name):
         return _numbers(table, mapping, name)
     return np.full(len(table), np.nan)
 
 
 def _require_no_multiples_of_g(table: RawTable, mapping: Columns, force: list[Array]) -> None:
-    """Raise if a specific force whose unit nobody states averages 1, as of a body in g."""
+    """Raise if a specific force without a stated unit seems to be in g instead of m/s^2.
+
+    That is if the median of its length is that of a body at rest in g, by `is_in_g`.
+    """
     columns = [mapping.mapped[name] for name in _FORCE]
     if any(c.unit_stated or table.unit_of(c.name, "m/s^2") is not None for c in columns):
         return

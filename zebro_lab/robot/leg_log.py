@@ -35,8 +35,9 @@ def bridged_gaps(
 ) -> tuple[str, ...]:
     """Check the gaps of a leg log, and return a note on each that is bridged by straight lines.
 
-    A gap is bridged if it lasts at most `LONGEST_BRIDGED`, and the angle of every leg behind it is
-    the one that the leg reaches at its speed before the gap, and at that after it.
+    A step of time is a gap if it is longer than `WIDEST` median steps. It is bridged if it lasts at
+    most `LONGEST_BRIDGED`, and the angle of every leg behind it is, within `_APART`, what the leg
+    reaches at its speed before the gap, and also at its speed after it.
 
     Args:
         table: Table of the log.
@@ -70,7 +71,11 @@ def bridged_gaps(
 
 
 def _why_not(t: Array, theta: Array, at: int, gaps: NDArray[np.intp]) -> str | None:
-    """Return why the gap after sample `at` is not bridged; None if it is."""
+    """Return why the gap after sample `at` is not bridged; None if it is, see `bridged_gaps`.
+
+    The speeds are those over `_BESIDE` before and after the gap, where there must be `_FEWEST`
+    samples each and no other of `gaps`, the samples before each gap.
+    """
     length = t[at + 1] - t[at]
     if length > LONGEST_BRIDGED:
         return f"that is {length:.3g} s"
@@ -162,11 +167,18 @@ def legs_of_table(
 
 
 def _angle(table: RawTable, name: str, columns: Columns) -> Array:
+    """Return a leg's angle by its canonical name, finite throughout, shape (n,) [rad]."""
     return columns.numbers(table, name, what=f"angle of leg {name[-1]}", advice=_ADVICE)
 
 
 def _require_unwrapped(table: RawTable, columns: Columns, raw: Array, theta: Array) -> None:
-    """Check that unwrapping is not ambiguous: short steps, but for jumps by one turn."""
+    """Check that unwrapping the angles is not ambiguous.
+
+    Raises:
+        DataError: A leg turns by more than `LONGEST_TURN` between samples; or, where angles of any
+            leg are wrapped to one turn, by more than `LONGEST_WRAPPED`; or it jumps by more than
+            that on top of one turn. Names the cell.
+    """
     jumps, turns = np.abs(np.diff(raw, axis=0)), np.abs(np.diff(theta, axis=0))
     wrapped = bool((jumps > np.pi).any())
     most = LONGEST_WRAPPED if wrapped else LONGEST_TURN
@@ -186,6 +198,7 @@ def _require_unwrapped(table: RawTable, columns: Columns, raw: Array, theta: Arr
 
 
 def _notes(t: Array, raw: Array, theta: Array) -> list[str]:
+    """Return a note on number, duration and rate of samples, and one if angles were unwrapped."""
     rate = (len(t) - 1) / (t[-1] - t[0])
     notes = [f"leg log: {len(t)} samples over {t[-1] - t[0]:.4g} s, about {rate:.4g} Hz"]
     if np.any(raw != theta):

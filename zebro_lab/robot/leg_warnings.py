@@ -53,6 +53,7 @@ def leg_warnings(
 
 
 def _too_fast(rate: float) -> str:
+    """Return a warning of legs that turn faster than any robot's, as of degrees taken for rad."""
     return (
         f"{WARNING}the legs make {rate:.3g} turns a second; expected at most {_FASTEST:g}: are the "
         'angles in degrees? If so, state unit = "deg" for theta1 to theta6 in columns.toml'
@@ -60,6 +61,7 @@ def _too_fast(rate: float) -> str:
 
 
 def _text(fault: LegFault, columns: str) -> str:
+    """Return the warning of one fault; `columns` names the `columns.toml` to correct."""
     match fault:
         case SignFault(legs):
             return _sign(legs, columns)
@@ -75,6 +77,7 @@ def _text(fault: LegFault, columns: str) -> str:
 
 
 def _sign(legs: Sequence[int], columns: str) -> str:
+    """Return a warning of legs whose angle probably has the other sign."""
     return (
         f"{WARNING}{_named(legs)} {_verb(legs, 'turn')} backwards and {_verb(legs, 'pass')} -90 "
         "deg, straight up, where slow as on the ground; expected 90 deg, straight down: sign = -1 "
@@ -84,6 +87,7 @@ def _sign(legs: Sequence[int], columns: str) -> str:
 
 
 def _zero(fault: ZeroFault) -> str:
+    """Return a warning of legs whose angle probably has another zero, with offsets to mend it."""
     offsets = [0.0] * N_LEGS
     for leg, offset in zip(fault.legs, np.degrees(fault.offset), strict=True):
         offsets[leg - 1] = _rounded(float(offset))
@@ -102,12 +106,17 @@ def _zero(fault: ZeroFault) -> str:
 
 
 def _rounded(offset: float) -> float:
+    """Round an offset to a multiple of 90 deg if it is within `_CLOSE` of one, else of 5 deg.
+
+    -180 becomes 180, which is the same angle, and -0 becomes 0.
+    """
     quarter = 90.0 * round(offset / 90)
     rounded = quarter if abs(offset - quarter) <= _CLOSE else 5.0 * round(offset / 5)
     return 180.0 if rounded == -180 else rounded + 0.0
 
 
 def _order(fault: OrderFault) -> str:
+    """Return a warning of an order of legs in which no robot steps, with orders that are usual."""
     groups = " / ".join(", ".join(map(str, group)) for group in fault.groups)
     repairs = [_repair(order) for order in fault.orders[:_SHOWN_ORDERS]]
     return (
@@ -118,12 +127,18 @@ def _order(fault: OrderFault) -> str:
 
 
 def _repair(order: Sequence[int]) -> str:
+    """Describe an order of legs by the columns that would be those of legs 1 to 6.
+
+    Args:
+        order: Leg that each column `theta1` to `theta6` would then be.
+    """
     columns = ", ".join(f"theta{order.index(leg) + 1}" for leg in range(1, N_LEGS + 1))
     told = f" ({ORDERS[tuple(order)]})" if tuple(order) in ORDERS else ""
     return f"legs 1 to 6 being what is now {columns}{told}"
 
 
 def _backward(motion: LegMotion) -> tuple[str, ...]:
+    """Return a note on which legs turn backwards; nothing if none does."""
     backward = tuple(int(leg) + 1 for leg in np.nonzero(motion.direction < 0)[0])
     if not backward:
         return ()
@@ -132,19 +147,23 @@ def _backward(motion: LegMotion) -> tuple[str, ...]:
 
 
 def _named(legs: Sequence[int]) -> str:
+    """Return legs as words: "leg 1", "legs 1 and 2"."""
     return f"leg{'s' * (len(legs) > 1)} {_listed(legs)}"
 
 
 def _angles(legs: Sequence[int]) -> str:
+    """Return the columns of legs as words: "theta1 and theta2"."""
     return _listed(f"theta{leg}" for leg in legs)
 
 
 def _listed(items: Iterable[object]) -> str:
+    """Join items by commas, and the last by "and"."""
     *others, last = map(str, items)
     return f"{', '.join(others)} and {last}" if others else last
 
 
 def _verb(legs: Sequence[int], verb: str) -> str:
+    """Return a verb in the singular or plural, by the number of legs."""
     if verb == "be":
         return "are" if len(legs) > 1 else "is"
     ending = "es" if verb.endswith("s") else "s"

@@ -23,7 +23,7 @@ class MarkerPrint:
 
     @property
     def text(self) -> str:
-        """The marker as "DICTIONARY:NUMBER:SIDE" with the side in mm,.
+        """The marker as "DICTIONARY:NUMBER:SIDE" with the side in mm.
 
         >>> MarkerPrint().text
         '4x4_50:0:120mm'

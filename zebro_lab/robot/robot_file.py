@@ -152,6 +152,7 @@ height = 0.1  # height of the marker's centre above the ground while the robot s
 
 
 def _marker_section(marker: Marker | None) -> str:
+    """Format the section of the marker, in comments if there is none."""
     shown = marker or Marker((0.0, 0.0, 0.0385))
     measured = {} if shown.height is None else {"height": shown.height}
     text = fill_in(_MARKER_TEMPLATE, {"marker": {
@@ -212,6 +213,7 @@ def _speed_limit(legs: SettingsTable) -> float | None:
 
 
 def _hips(hips: SettingsTable) -> np.ndarray:
+    """Return the position of each hip, shape (6, 3) [m]; those not given are the thesis's."""
     places = Robot().hips.copy()
     for leg in range(1, N_LEGS + 1):
         if str(leg) in hips:
@@ -233,6 +235,7 @@ def _require_side(hips: SettingsTable, leg: int, place: np.ndarray) -> None:
 
 
 def _marker(marker: SettingsTable) -> Marker:
+    """Read the section of the marker; all but its position has a default."""
     if "position" not in marker:
         raise marker.fault(
             "is missing; give the marker's centre in the body frame as [x, y, z] in m", "position"

@@ -39,16 +39,22 @@ def advice_text(advice: Advice) -> str:
 
 @advice_text.register
 def _sample_longer(advice: SampleLonger) -> str:
+    """Advise to resume sampling up to a number of moves."""
     return f"{advice.reason}: give the same command with --resume --max-steps {advice.moves}"
 
 
 @advice_text.register
 def _sample_posterior(advice: SamplePosterior) -> str:
+    """Advise to sample the posterior instead of its Laplace approximation."""
     return f"{advice.reason}: give the same command without --engine laplace"
 
 
 @advice_text.register
 def _measure_slips(advice: MeasureSlips) -> str:
+    """Advise to measure further slip ratios, `SECONDS` each, at the loads of the plan.
+
+    Slip ratios that are equal to two digits are measured once.
+    """
     numbers = list(dict.fromkeys(f"{slip:.2g}" for slip in advice.slips))
     lines = {
         "points": {
@@ -70,6 +76,7 @@ def _measure_slips(advice: MeasureSlips) -> str:
 
 @advice_text.register
 def _measure_also(advice: MeasureAlso) -> str:
+    """Advise to run a changed plan: other loads, slip ratios or repeats, or longer runs."""
     points: dict[str, str] = {}
     if advice.loads:
         points["loads"] = f"[{', '.join(f'{load:.3g}' for load in advice.loads)}]"
@@ -88,6 +95,7 @@ def _measure_also(advice: MeasureAlso) -> str:
 
 @advice_text.register
 def _sample_again(advice: SampleAgain) -> str:
+    """Advise to sample with another seed, since ensembles differ."""
     return (
         f"{advice.reason}: give the same command with --seed 2 and an --out of its "
         "own; if the differences stay, see corner.png for a second mode or a long tail, and use "
@@ -97,6 +105,7 @@ def _sample_again(advice: SampleAgain) -> str:
 
 @advice_text.register
 def _zero_before_each(advice: ZeroBeforeEach) -> str:
+    """Advise to measure in short runs, each after a zero, since forces drift."""
     lines = {
         "points": {"length": '"duration"', "duration": f"{SHORT:.1f}", "repeats": f"{PASSES}"},
         "controls": {"tare_every": "1", "tare_duration": f"{SHORT_ZERO:.1f}"},
@@ -112,6 +121,7 @@ def _zero_before_each(advice: ZeroBeforeEach) -> str:
 
 @advice_text.register
 def _weigh_load_cell(advice: WeighLoadCell) -> str:
+    """Advise to measure the stability of the load cell's zero with known masses."""
     return (
         f"{advice.reason}: weigh the load cell (zebro-lab rig weigh --rig RIG --masses KG,KG "
         "--data DATA), state its zero_stability there in columns.toml, and give the same command "
@@ -121,6 +131,7 @@ def _weigh_load_cell(advice: WeighLoadCell) -> str:
 
 @advice_text.register
 def _try_laws(advice: TryLaws) -> str:
+    """Advise to compare slip laws and, if the advice says so, to fit signs of slip apart."""
     apart = ", then with that law and --sides auto"
     return (
         f"{advice.reason}: give the same command with --law compare{apart * advice.both_signs}, "
@@ -131,11 +142,13 @@ def _try_laws(advice: TryLaws) -> str:
 
 @advice_text.register
 def _correct_data(advice: CorrectData) -> str:
+    """Advise to correct the data as the advice says."""
     return f"{advice.reason}: {advice.step}"
 
 
 @advice_text.register
 def _try_definition(advice: TryDefinition) -> str:
+    """Advise to check the slip definition, since slip may be divided by the other speed."""
     return (
         f"{advice.reason}: find out by which speed the slip ratio was divided; if by that of "
         "travel, replace it by slip/(1 + slip), which is divided by the leg's, and fit again; else "
@@ -145,6 +158,7 @@ def _try_definition(advice: TryDefinition) -> str:
 
 @advice_text.register
 def _exclude_runs(advice: ExcludeRuns) -> str:
+    """Advise to exclude runs that do not fit the others, by a command for each."""
     commands = "\n".join(f"zebro-lab exclude DATA/{name} --why REASON" for name in advice.runs)
     return (
         f"{advice.reason}: where the lab notes tell why (another material, a lost zero), leave "

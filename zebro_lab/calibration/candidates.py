@@ -24,8 +24,9 @@ PEAK_WITH_LOAD: Final = "peak slip grows with load"
 def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
     """Return the laws to choose from, by reported name, the preferred first.
 
-    They are the Magic Formula's, with `--law compare` the others' too, else the one that is named;
-    with `--sides apart` all with their sides apart, with `--sides auto` those behind the others.
+    They are the Magic Formulas, with `--law compare` the others too, else the law that is named.
+    With `--sides apart`, driving and braking have a stiffness and friction each in every law; with
+    `--sides auto`, such laws follow those with one curve for both.
 
     Args:
         request: Options: law, dependence on load, and sides.
@@ -41,7 +42,10 @@ def candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, S
 def _sided(
     laws: dict[str, SlipLaw], request: CalibrationRequest, samples: SlipSamples
 ) -> dict[str, SlipLaw]:
-    """Return laws with driving and braking together or apart, as asked for, or both."""
+    """Return laws with driving and braking together or apart, as asked for; with "auto" both.
+
+    If slip has one sign, sides cannot be told apart: "auto" gives the laws as they are.
+    """
     if request.sides == TOGETHER:
         return laws
     both_signs = _has_both_signs(samples)
@@ -58,7 +62,11 @@ def _sided(
 
 
 def _has_both_signs(samples: SlipSamples) -> bool:
-    """Return whether slip drives in some blocks and brakes in others, beyond its noise."""
+    """Return whether slip drives in some blocks and brakes in others, beyond its noise.
+
+    Of blocks of 10 samples, each sign needs a share of `FEWEST_BLOCKS` in which slip is over three
+    standard deviations from zero.
+    """
     blocks = block_means(samples, 10)
     clear = np.abs(blocks.slip) > 3 * np.sqrt(blocks.slip_variance())
     shares = [np.mean(clear & (sign * blocks.slip > 0)) for sign in (1, -1)]
@@ -66,7 +74,11 @@ def _has_both_signs(samples: SlipSamples) -> bool:
 
 
 def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
-    """Return the laws to choose from with driving and braking on one curve."""
+    """Return the laws to choose from with driving and braking on one curve.
+
+    Of the Magic Formula there are one or two by its curvature (`_formulas`). With `--law compare`
+    the other laws are added, and at several loads load-sensitive Magic Formulas.
+    """
     if request.law not in (MagicFormula.name, COMPARE):
         return {request.law: slip_law(request.law)}
     several = len(load_levels(block_means(samples, 10))) > 1
@@ -82,13 +94,17 @@ def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, Sl
 
 
 def _short(name: str) -> str:
-    """Return the name in a table of laws of a Magic Formula by that of its curvature."""
+    """Return the name of a Magic Formula in a comparison of laws, by the name of its curvature."""
     known = {ONE_CURVATURE: "one E", PEAK_WITH_LOAD: "peak by load"}
     return f"{MagicFormula.name}, {known[name]}"
 
 
 def _formulas(samples: SlipSamples, *, sensitive: bool, several: bool) -> dict[str, SlipLaw]:
-    """Return the Magic Formulas by a name of their curvature, the preferred first."""
+    """Return the Magic Formulas by a name of their curvature, the preferred first.
+
+    With `several` loads there is a second one, whose peak slip grows with load; `sensitive` lets
+    friction and stiffness vary with load.
+    """
     middle_load = float(np.median(samples.normal_force))
     laws: dict[str, SlipLaw] = {ONE_CURVATURE: MagicFormula("constant", sensitive, middle_load)}
     if several:  # at one load the two are the same

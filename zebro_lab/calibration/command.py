@@ -23,7 +23,7 @@ def fit_and_report(
     Args:
         request: Options of the fit.
         output: How to print.
-        executor: Where fits without left-out runs and loads are computed; None for here.
+        executor: Computes the fits that leave out runs or loads; None for this process.
 
     Raises:
         Exit: The fit was stopped (exit code 130); a line on stderr says so.

@@ -45,5 +45,5 @@ def coulomb_numbers(text: str) -> tuple[float, ...] | None:
 
 
 def _meant(friction: float) -> str:
-    """Return a question with a friction that was given in percent; empty if that is none either."""
+    """Return "; did you mean …?" for a friction from 10 to 100, as if in percent; else ""."""
     return f"; did you mean {COULOMB}:{friction / 100:g}?" if 10 <= friction <= 100 else ""

@@ -124,7 +124,11 @@ def _coulomb(text: str) -> GivenCurve:
 
 
 def _table(path: Path) -> GivenCurve:
-    """Read a table of a curve; between points the force is interpolated linearly."""
+    """Read a table of curves at one load or more as one curve.
+
+    At any load it is the curve of the nearest load, by their ratio; between points the force is
+    interpolated linearly. The slope is that of the driving side, NaN if it has too few points.
+    """
     table = read_curve_table(path)
     curves = curves_by_load(table.slip, table.load, table.traction)
 

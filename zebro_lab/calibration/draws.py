@@ -80,6 +80,10 @@ def _own(group: h5py.Group, name: str, path: Path) -> object:
 
 
 def _draws(group: h5py.Group, name: str, path: Path) -> Array:
+    """Read the draws of one parameter from a group, all chains joined, shape (n,).
+
+    Raises `DataError` if they are no numbers, stored in another file, none, or over `MOST_DRAWS`.
+    """
     found = _own(group, name, path)
     if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "fiu":
         raise DataError(f"'{name}' does not hold numbers; calibrate again", file=path)

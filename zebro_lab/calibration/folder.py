@@ -147,6 +147,7 @@ def _reservations(verdict: Mapping[str, Any]) -> tuple[str | None, str | None]:
 
 
 def _text(content: Mapping[str, Any], key: str, default: str) -> str:
+    """Return a text in a TOML table, or the default if it is missing; else raise `TypeError`."""
     found = content.get(key, default)
     if not isinstance(found, str):
         raise TypeError(f"'{key}' is {found!r}; expected a text")
@@ -154,6 +155,7 @@ def _text(content: Mapping[str, Any], key: str, default: str) -> str:
 
 
 def _curve(content: Mapping[str, Any]) -> SlipCurve:
+    """Return the slip curve that the content of a `slip.toml` describes."""
     options = {k: v for k, v in content["law"].items() if k != "name"}
     law = slip_law(content["law"]["name"], **options)
     k, tested = len(law.parameters), content["tested"]
@@ -171,6 +173,7 @@ def _curve(content: Mapping[str, Any]) -> SlipCurve:
 
 
 def _numbers(key: str, found: object, shape: tuple[int, ...]) -> np.ndarray:
+    """Convert a list to an array; raise `ValueError` with the key if its shape is another."""
     numbers = np.array(found, dtype=float)
     if numbers.shape != shape:
         raise ValueError(f"{key} has numbers of shape {numbers.shape}; expected {shape}")
@@ -183,6 +186,7 @@ def _slip_toml(
     priors: Mapping[str, Any],
     lateral: Mapping[str, object],
 ) -> str:
+    """Format the content of `slip.toml`."""
     from model.bayes.law_scores import LawScores
 
     scores, document = calibration.comparison, tomlkit.document()
@@ -206,6 +210,7 @@ def _slip_toml(
 
 
 def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
+    """Return the table `verdict`: headline, state, checks with evidence, and advice."""
     verdict = calibration.verdict
     return {
         "headline": verdict.headline(),
@@ -224,6 +229,10 @@ def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def _law_content(calibration: "Calibration") -> dict[str, Any]:
+    """Return the tables of the law: options, posterior of its parameters, covariance, and curves.
+
+    Each entry of `curve` has the posterior medians of the curve's features at one load.
+    """
     law, k = calibration.posterior.law, len(calibration.posterior.law.parameters)
     return {
         "law": {"name": law.name, **law_options(law)},
@@ -267,6 +276,7 @@ def _run_out_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def _tested_content(calibration: "Calibration") -> dict[str, Any]:
+    """Return the table `tested`: ranges of block means, and numbers of samples and runs."""
     blocks = calibration.posterior.blocks
     return {
         "normal_force": [float(blocks.normal_force.min()), float(blocks.normal_force.max())],

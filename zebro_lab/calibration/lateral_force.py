@@ -32,7 +32,8 @@ class LateralForce:
         mean: Mean, with the sign that the data give it [N].
         sd: Standard deviation [N].
         over_load: Mean of lateral force over normal force [-].
-        over_traction: Mean over the mean size of traction, of either sign [-].
+        over_traction: Mean over the mean size of traction, with the mean's sign; infinite without
+            any traction [-].
     """
 
     samples: int
@@ -81,7 +82,7 @@ def lateral_sums(
         n_runs: Number of runs.
 
     Returns:
-        The sums of each run, to be added up, shape (n_runs, 6).
+        The sums listed at `_SUMS` of each run, to be added up, shape (n_runs, 6).
 
     Raises:
         DataError: The column is ambiguous, or a cell is not a number.

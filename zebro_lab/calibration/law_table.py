@@ -48,7 +48,11 @@ def sentence(scores: "LawScores") -> str:
 
 
 def _loss(scores: "LawScores", index: int) -> str:
-    """Say by how much a law predicts worse than the fitted one, on runs or else on loads."""
+    """Say by how much a law predicts worse than the fitted one.
+
+    It is told of left-out runs, if the law is clearly worse there or there is one load; else of
+    left-out loads.
+    """
     runs, loads = scores.runs(index, scores.chosen), scores.loads(index, scores.chosen)
     if runs.clearly_worse or loads is None:
         return f"({signed(runs)})"
@@ -131,4 +135,5 @@ def _rows(scores: "LawScores") -> list[dict[str, Any]]:
 
 
 def _rounded(value: float) -> float:
+    """Round a number to three decimals."""
     return round(float(value), 3)

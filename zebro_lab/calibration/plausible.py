@@ -15,7 +15,7 @@ LARGEST_RADIUS: Final = 3.0
 LARGEST_SLIP: Final = 1.5
 """Slip ratio computed from speeds that most rows keep within, even when braking hard [-]."""
 FRICTION: Final = (0.01, 4.0)
-"""Range of the ratio of traction to normal force [-]: ice has 0.02, racing tyres 2."""
+"""Range of the 95 % quantile of traction over normal force [-]: ice has 0.02, racing tyres 2."""
 
 STRAY: Final = 10.0
 """Ratio of one traction force to the largest normal force that no friction explains [-]."""
@@ -23,13 +23,15 @@ _ALL_LARGE: Final = 0.75  # slip ratio above which no sweep lies as a whole
 _REACHES: Final = 0.25  # slip ratio that each sweep goes below
 _SLIPPING: Final = 0.02  # slip ratio beyond which traction exceeds the zero error of a load cell
 _FEWEST: Final = 8  # rows that slip, to judge their sign
-_OPPOSED: Final = 0.9  # share of them
+_OPPOSED: Final = 0.9  # share of these rows in which traction opposes slip, for an error
 
 
 def require_plausible(
     table: RigTable, slip: SlipColumn, normal_force: Array, traction_force: Array
 ) -> tuple[str, ...]:
     """Check radii, slip ratios computed from speeds, and the ratio of the forces.
+
+    The ratio is the 95 % quantile of the size of traction over normal force.
 
     Args:
         table: The table.
@@ -43,9 +45,9 @@ def require_plausible(
 
     Raises:
         DataError: A radius is above `LARGEST_RADIUS`, most slip ratios computed from speeds are
-            beyond `LARGEST_SLIP`, or the ratio of the forces is outside `FRICTION` and the unit of
-            one of them is not stated; or the traction opposes the slip, or is far beyond the
-            largest normal force in a row.
+            beyond `LARGEST_SLIP`, the discs turn in opposite directions, or the ratio of the forces
+            is outside `FRICTION` and the unit of one of them is not stated; or the traction opposes
+            the slip, or is far beyond the largest normal force in a row.
     """
     doubts: tuple[str, ...] = ()
     if slip.column == "omega_leg":
@@ -73,7 +75,10 @@ def require_plausible(
 
 
 def _require_no_stray(table: RigTable, normal_force: Array, traction_force: Array) -> None:
-    """Raise `DataError` at a force that marks a missing value, such as -9999."""
+    """Raise `DataError` at a traction force over `STRAY` times the largest normal force.
+
+    It marks a missing value, such as -9999.
+    """
     limit = STRAY * float(np.max(normal_force))
     header = table.required("traction_force").name
     table.require(
@@ -88,6 +93,7 @@ def _require_no_stray(table: RigTable, normal_force: Array, traction_force: Arra
 
 
 def _typical(force: Array) -> str:
+    """Format the median size of forces for a message."""
     return f"{np.median(np.abs(force)):.3g}"
 
 
@@ -100,6 +106,7 @@ def _is_stated(table: RigTable, name: str) -> bool:
 
 
 def _require_radii(table: RigTable) -> None:
+    """Raise `DataError` if a radius is above `LARGEST_RADIUS`, as of a number in mm."""
     for name in ("radius_leg", "radius_ground"):
         largest = float(np.max(table.constant_or_column(name)))
         if largest > LARGEST_RADIUS:
@@ -111,6 +118,10 @@ def _require_radii(table: RigTable) -> None:
 
 
 def _require_slip(table: RigTable, ratio: Array) -> None:
+    """Raise `DataError` if the discs turn in opposite directions in over 90 % of the rows.
+
+    Or if the slip ratio, shape (n,), is beyond `LARGEST_SLIP` in more than half of them.
+    """
     omega_leg, omega_ground = (table.si(name) for name in ("omega_leg", "omega_ground"))
     opposite = float(np.mean(omega_leg * omega_ground < 0))
     beyond = float(np.mean(np.abs(ratio) > LARGEST_SLIP))
@@ -135,7 +146,10 @@ def _require_slip(table: RigTable, ratio: Array) -> None:
 
 
 def _exchanged_radii(table: RigTable) -> tuple[str, ...]:
-    """Return a note if all slips are large, and would reach down to none with radii exchanged."""
+    """Return a note if slip is large in nearly all rows, but would not be with the radii exchanged.
+
+    The 5 % quantile of its size is `_ALL_LARGE` or more, and would be `_REACHES` or less.
+    """
     turns = table.si("omega_ground") / table.si("omega_leg")
     ratio = table.constant_or_column("radius_ground") / table.constant_or_column("radius_leg")
     stated, exchanged = (np.quantile(np.abs(1 - turns * r), 0.05) for r in (ratio, 1 / ratio))
@@ -149,7 +163,11 @@ def _exchanged_radii(table: RigTable) -> tuple[str, ...]:
 
 
 def _require_one_sign(table: RigTable, ratio: Array, traction_force: Array) -> None:
-    """Raise `DataError` if the traction is negative where slip is positive, and the reverse."""
+    """Raise `DataError` if the traction is negative where slip is positive, and the reverse.
+
+    That is if it opposes slip in a share of `_OPPOSED` of the rows with slip beyond `_SLIPPING`, of
+    which there must be `_FEWEST`.
+    """
     slipping = np.abs(ratio) > _SLIPPING
     opposed = ratio[slipping] * traction_force[slipping] < 0
     if len(opposed) < _FEWEST or np.mean(opposed) < _OPPOSED:

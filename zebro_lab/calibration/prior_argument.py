@@ -51,6 +51,9 @@ class StatedPrior:
     def prior(self, parameter: Parameter, key: str, file: Path | None = None) -> Prior:
         """Return the prior of a parameter, in SI.
 
+        A lognormal prior is that of the distance from the parameter's lower bound. A Gaussian is
+        cut off at the bounds if one of them is within `_FAR` standard deviations of its mean.
+
         Args:
             parameter: The parameter.
             key: Option or key that it was stated by, for messages.

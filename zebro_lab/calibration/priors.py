@@ -218,6 +218,7 @@ def priors_content(stated: KnownPriors, calibration: Calibration) -> dict[str, A
 
 
 def _agreement(shift: PriorShift) -> dict[str, Any]:
+    """Return the shift of one prior by the data; its p-value only if the data can test it."""
     content: dict[str, Any] = {
         "parameters": list(shift.names),
         "shift_in_prior_sd": [float(x) for x in shift.shift],

@@ -119,6 +119,7 @@ class CalibrationRequest:
             )
 
     def _require_comparable(self) -> None:
+        """Raise `SettingsError` for an option that `--law compare` excludes."""
         if self.load_sensitivity:
             raise SettingsError(
                 "--law compare fits the Magic Formula both with and without dependence on load; "
@@ -139,6 +140,7 @@ class CalibrationRequest:
             )
 
     def _require_priors(self) -> None:
+        """Raise `SettingsError` if a prior cannot be parsed, or does not fit the other options."""
         if self.prior:
             from zebro_lab.calibration.prior_argument import parse_prior
 

@@ -197,12 +197,14 @@ def _read_parts(
 
 
 def _is_cut_short(run: Path) -> bool:
+    """Return whether the recorder of a run never ended it."""
     return read_manifest(run).exit_status == RECORDING
 
 
 def _column_maps(
     sources: Sequence[DataSource], override: Path | None
 ) -> dict[DataSource, RigColumns]:
+    """Return the column map of each source, which is that of the file `override` if it is given."""
     if override is not None:
         return dict.fromkeys(sources, read_columns(override))
     return {source: source.columns() for source in sources}
@@ -224,10 +226,7 @@ def _labels(sources: Sequence[DataSource]) -> list[str]:
 
 
 def _exclusion(source: DataSource) -> str | None:
-    """Return the reason why a run folder is excluded; None for a table or a run that counts.
-
-    Raises `NotFound` or `DataError` if the run's manifest cannot be read.
-    """
+    """Return why a run folder is excluded, by its manifest; None for a table or another run."""
     if not source.is_run_folder:
         return None
     excluded = read_manifest(source.path).excluded
@@ -280,6 +279,7 @@ def _without_duplicates(
 
 
 def _require_one_definition(parts: Sequence[RigPart]) -> None:
+    """Raise `DataError` if parts have slip ratios of different definitions."""
     first = parts[0]
     for part in parts:
         if part.slip.definition is not first.slip.definition:
@@ -291,6 +291,7 @@ def _require_one_definition(parts: Sequence[RigPart]) -> None:
 
 
 def _require_informative(samples: SlipSamples, parts: Sequence[RigPart]) -> None:
+    """Raise `DataError` if samples are too few, or slip varies no more than by its noise."""
     where = parts[0].path if len(parts) == 1 else None
     trials = all(part.columns.runs.each_row for part in parts)
     least = _LEAST_TRIALS if trials else _LEAST_SAMPLES
@@ -317,6 +318,7 @@ def _require_informative(samples: SlipSamples, parts: Sequence[RigPart]) -> None
 
 
 def _notes(parts: Sequence[RigPart]) -> list[str]:
+    """Return notes on slip, runs, rows left out and times, each once, then those of the parts."""
     origins = dict.fromkeys(f"slip {part.slip.origin}" for part in parts)
     rules: Counter[str] = Counter()
     for part in parts:
@@ -327,6 +329,7 @@ def _notes(parts: Sequence[RigPart]) -> list[str]:
 
 
 def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
+    """Return a note on the rows that `[rows] keep` left out, for each set of conditions."""
     read: Counter[str] = Counter()
     kept: Counter[str] = Counter()
     for part in parts:
@@ -338,6 +341,7 @@ def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
 
 
 def _time_note(parts: Sequence[RigPart]) -> list[str]:
+    """Return a note if some parts have times and others not: then none are used."""
     timed = sum(part.time is not None for part in parts)
     if timed in (0, len(parts)):
         return []

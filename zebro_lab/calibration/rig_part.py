@@ -60,6 +60,7 @@ def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]
 
 
 def _why_none(speed_leg: Array) -> str:
+    """Return why a recording has no sweep, by the rim speed of the leg disc, shape (n,) [m/s]."""
     if np.abs(speed_leg).max() <= STANDING:
         return "the leg disc never turned, so that slip is undefined; record while the rig runs"
     return "slip jumped all the time, so that there is no sweep; change the slip ratio more slowly"
@@ -261,11 +262,12 @@ def joined_lateral(parts: Sequence[RigPart]) -> LateralForce | None:
 
 
 def _samples_of_runs(part: RigPart) -> NDArray[np.intp]:
+    """Return the number of samples of each run of a part, shape (n_runs,)."""
     return np.bincount(part.runs.index, minlength=len(part.runs.names))
 
 
 def joined_rig_errors(parts: Sequence[RigPart]) -> RigErrors:
-    """Return the larger standard deviations of all parts' rigs."""
+    """Return the largest of all parts' standard deviations, for each error of the rig."""
     each = [part.rig_errors for part in parts]
     return RigErrors(
         max(errors.radius_ratio for errors in each),

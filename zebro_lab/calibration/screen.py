@@ -99,6 +99,7 @@ def print_calibration(console: Console, calibration: Calibration, out: Path) -> 
 
 
 def _print_blocks(console: Console, calibration: Calibration) -> None:
+    """Print how samples are averaged, the run-out of discs, and the comparison of laws."""
     blocks, choice = calibration.posterior.blocks, calibration.fit.block_choice
     correlation = choice.correlation
     lines = [
@@ -149,6 +150,7 @@ def run_out_lines(found: RunOut | None) -> list[str]:
 
 
 def _comparison_lines(calibration: Calibration) -> list[str]:
+    """Say which law was chosen and how much others differ in predicting left-out runs."""
     comparison = calibration.comparison
     if comparison is None:
         return []
@@ -193,6 +195,7 @@ def _law_table(scores: LawScores) -> Table:
 
 
 def _parameter_table(calibration: Calibration) -> Table:
+    """Return a table of the parameters' posterior, with diagnostics of the free ones."""
     title = f"parameters of '{calibration.posterior.law.name}' and of the measurement"
     if is_simulated(calibration.source):
         title += " (simulated)"
@@ -257,10 +260,12 @@ def prior_words(shift: PriorShift) -> str:
 
 
 def _unit(e: Estimate) -> str:
+    """Return the short form of an estimate's unit."""
     return unit_symbol(e.parameter.unit)
 
 
 def _interval(e: Estimate) -> str:
+    """Format the 90 % interval of an estimate."""
     return f"{e.low:.4g} … {e.high:.4g}"
 
 
@@ -281,6 +286,7 @@ def _curve_tables(calibration: Calibration) -> list[Table]:
 
 
 def _curve_table(title: str, levels: np.ndarray, curves: Sequence[Sequence[Estimate]]) -> Table:
+    """Return a table of the curve's features, one row per load; `levels` are the loads [N]."""
     headings = (f"{e.parameter.symbol} [{_unit(e)}]" for e in curves[0])
     table = plain_table(title, (), ("Fn [N]", *headings))
     for load, row in zip(levels, curves, strict=True):
@@ -289,6 +295,7 @@ def _curve_table(title: str, levels: np.ndarray, curves: Sequence[Sequence[Estim
 
 
 def _print_quality(console: Console, calibration: Calibration) -> None:
+    """Print R² and RMSE of the fit, R² of cross-validation, and the time it took."""
     residuals = calibration.residuals
     lines = [
         f"Fit of the block means: R² {residuals.r_squared:.4f}, RMSE {residuals.rmse:.3g} N, RMSE "
@@ -310,6 +317,7 @@ _STYLES = {State.TRUSTWORTHY: "bold green", State.AS_TESTED: "bold yellow"}
 
 
 def _print_verdict(console: Console, calibration: Calibration) -> None:
+    """Print verdict, checks and advice; if parameters are weak, also peak and slope by load."""
     verdict = calibration.verdict
     style = _STYLES.get(verdict.state, "bold red")
     console.print(Text("\nverdict: " + verdict.headline(), style=style))

@@ -80,6 +80,7 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
 
 
 def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
+    """Read a calibration as the slip law of `--slip`, with warnings of changed or lost files."""
     read = read_slip_file(path)
     notes = [f"WARNING: {each}" for each in changed_output(read.file)]
     notes += [

@@ -79,7 +79,7 @@ def calibrate(
         watcher: Receives progress and may request a stop.
         data: What `read` returned for the same request; None to read it here.
         first: Called with the first answer, before sampling.
-        executor: Where fits without left-out runs and loads are computed; None for here.
+        executor: Computes the fits that leave out runs or loads; None for this process.
 
     Returns:
         The finished fit and the rig data that were fitted.
@@ -164,6 +164,7 @@ def stated_notes(request: CalibrationRequest, data: RigData) -> tuple[str, ...]:
 
 
 def _sampler(request: CalibrationRequest, stated: KnownPriors) -> SamplerSettings:
+    """Return the settings of the sampler; an earlier calibration may fix the block length."""
     return SamplerSettings(
         max_steps=request.max_steps,
         block_length=stated.block_length,
@@ -180,6 +181,7 @@ def _write(
     stated: KnownPriors,
     lateral: LateralForce | None,
 ) -> None:
+    """Write the calibration folder: tables, pictures and manifest."""
     priors, fit = priors_content(stated, calibration), calibration.fit
     known = {"load_cell": asdict(fit.load_cell), "rig_errors": asdict(fit.rig_errors)}
     settings = {**request.decisive(), **known, "priors": priors}

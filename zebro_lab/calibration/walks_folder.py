@@ -194,6 +194,7 @@ def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
 
 
 def _require_same_slip(content: Mapping[str, Any], slip_toml: Path, file: Path) -> None:
+    """Raise `DataError` if the hash of `slip.toml` is not that of the fit of walks."""
     if content["slip"] != file_hash(slip_toml):
         raise DataError(
             f"was fitted with another slip law than the {slip_toml.name} beside it; fit the walks "
@@ -203,6 +204,10 @@ def _require_same_slip(content: Mapping[str, Any], slip_toml: Path, file: Path) 
 
 
 def _posterior(content: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> WalkPosterior:
+    """Return the posterior from `walks.toml` and `draws.npz`; raise `ValueError` if shapes differ.
+
+    Files of schema `ISOTROPIC` lack the parameters of lateral traction, which become 0.
+    """
     prior = dict(content["prior"])
     names = tuple(each["name"] for each in content["walk"])
     values, case, weight, best = (arrays[key] for key in ("values", "case", "weight", "best"))
@@ -232,6 +237,7 @@ def _with_lateral(values: np.ndarray) -> np.ndarray:
 
 
 def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
+    """Format the content of `walks.toml`; the first of `inputs` is the hash of `slip.toml`."""
     posterior = fitted.posterior
     parameters = posterior.contractions()
     document = tomlkit.document()
@@ -267,6 +273,10 @@ def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
 
 
 def _case(found: Any, posterior: WalkPosterior) -> dict[str, Any]:
+    """Return the entry of a case in `walks.toml`.
+
+    A leg that is mounted wrongly has its number and offset, and the walk if it is so in one alone.
+    """
     row = {"name": found.name, "probability": found.probability}
     if isinstance(found.case, WrongLeg):
         row |= {
@@ -282,6 +292,7 @@ def _case(found: Any, posterior: WalkPosterior) -> dict[str, Any]:
 
 
 def _write_left_out(file: Path, left_out: Mapping[str, Mapping[str, Metrics]]) -> None:
+    """Write `left_out.csv`, one row per walk and model."""
     import pandas as pd
 
     rows = [

@@ -48,6 +48,7 @@ def read_off(request: ReadOffRequest, output: Output = TEXT) -> None:
 
 
 def _table(result: "ReadOffResult") -> "Table":
+    """Return a table of the coefficients with standard errors, for curves that gave them."""
     from zebro_lab.terminal.tables import plain_table
 
     headings = ("Fn [N]", "B [-]", "C [-]", "D [N]", "E [-]", "D/Fn", "peak slip", "misfit [N]")

@@ -110,7 +110,10 @@ def read_off_curves(request: ReadOffRequest) -> ReadOffResult:
 
 
 def _points(request: ReadOffRequest) -> tuple[CurveTable, Array | None]:
-    """Read points in the definition that is asked for; of rig data also the loads set [N]."""
+    """Read points in the definition that is asked for; of rig data also the loads that were set.
+
+    The loads [N] are found from about 1000 block means, whose noise is less than that of samples.
+    """
     if len(request.data) == 1 and is_curve_table(request.data[0]):
         table = read_curve_table(request.data[0], columns=request.columns)
         wanted = SlipDefinition(request.slip_definition or table.definition)
@@ -130,11 +133,16 @@ def _points(request: ReadOffRequest) -> tuple[CurveTable, Array | None]:
 
 
 def _run_means(values: Array, runs: list[slice]) -> Array:
+    """Return the mean over each run, shape (n_runs,)."""
     return np.array([float(np.mean(values[run])) for run in runs])
 
 
 def _read_sides(curve: LoadCurve) -> Iterator[ReadCurve]:
-    """Yield what is read off the driving and the braking side, each through the origin."""
+    """Yield what is read off the driving and the braking side.
+
+    A side with fewer than `_FEWEST` points is left out. Each side begins at the origin, which is
+    added where it is no point.
+    """
     for side, half in (("driving", curve.driving()), ("braking", curve.braking())):
         if len(half.slip) < _FEWEST:
             continue
@@ -148,6 +156,7 @@ def _read_sides(curve: LoadCurve) -> Iterator[ReadCurve]:
 
 
 def _write(request: ReadOffRequest, result: ReadOffResult, files: tuple[Path, ...]) -> None:
+    """Write the result folder: table, picture and manifest."""
     rows = [each.row() for each in result.curves]
     content = {
         "source": result.source,

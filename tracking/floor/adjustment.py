@@ -39,9 +39,7 @@ from tracking.shared import EDGES, LENS, SharedErrors, mark_name, stand_name
 
 _CHANCE = 0.95
 """Quantile of chi-squared below which a sum of squared residuals counts as chance [-]."""
-
-_REWEIGHINGS = 5
-
+_REWEIGHINGS = 5  # largest number of refits with new variances
 EDGE_REACH = 0.3
 """Logarithm of distance over which the common error of edges changes as much as it is large [-]."""
 
@@ -195,9 +193,7 @@ class Adjustment:
         prior += 2 * np.log(max(self.edge_sd, 1e-6))
         return -0.5 * (cost + float(np.linalg.slogdet(normal)[1]) + noise) - prior
 
-    def _factors(
-        self, parts: Sequence["_Part"], factors: tuple[float, float]
-    ) -> tuple[float, float]:
+    def _factors(self, parts: Sequence[_Part], factors: tuple[float, float]) -> tuple[float, float]:
         """Estimate factors, at least 1, on standard deviations of pixels and tape measurements.
 
         Variance components (Helmert 1907; Koch 1999, section 3.6): with N the normal equations of
@@ -215,11 +211,12 @@ class Adjustment:
         return found[0], found[1]
 
     @cached_property
-    def _lens_root(self) -> Array:
+    def _lens_root(self) -> Array:  # A (9, r) with A A' the lens's covariance
         return SharedErrors(self.camera.covariance, {}).root
 
     @cached_property
     def _mark_slots(self) -> dict[int | str, slice]:
+        """Columns of each mark's unknowns among all: after 6 of each stand, in the map's order."""
         start, slots = 6 * len(self.views), {}
         for key, mark in self.floor.marks.items():
             slots[key] = slice(start, start + len(mark.prior_sd))
@@ -227,12 +224,12 @@ class Adjustment:
         return slots
 
     @property
-    def _lens_slot(self) -> slice:
+    def _lens_slot(self) -> slice:  # columns of the lens's unknowns, after those of the marks
         start = max(slot.stop for slot in self._mark_slots.values())
         return slice(start, start + self._lens_root.shape[1])
 
     @property
-    def _size(self) -> int:
+    def _size(self) -> int:  # number of unknowns; the last two are those of the edges
         return self._lens_slot.stop + 2
 
     def _system(self, found: Adjusted) -> tuple["_Part", "_Part", "_Part"]:
@@ -240,6 +237,7 @@ class Adjustment:
         return self._by_pixels(found), self._by_tape(found.floor), self._by_prior(found)
 
     def _by_pixels(self, found: Adjusted) -> "_Part":
+        """Compute the normal equations of the pixels of all marks in all stands."""
         size = self._size
         normal, gradient, cost, count = np.zeros((size, size)), np.zeros(size), 0.0, 0
         for index, (pose, view) in enumerate(zip(found.poses, self.views, strict=True)):
@@ -308,6 +306,7 @@ class Adjustment:
         return weights
 
     def _by_tape(self, floor: FloorMap) -> "_Part":
+        """Compute the normal equations of the marks' differences from their measurement."""
         size = self._size
         normal, gradient, cost, count = np.zeros((size, size)), np.zeros(size), 0.0, 0
         for key, slot in self._mark_slots.items():
@@ -320,6 +319,7 @@ class Adjustment:
         return _Part(normal, gradient, cost, count)
 
     def _by_prior(self, found: Adjusted) -> "_Part":
+        """Compute the normal equations of the priors of the lens and of the common edges."""
         size, slot = self._size, self._lens_slot
         normal, gradient = np.zeros((size, size)), np.zeros(size)
         normal[slot, slot] = np.eye(slot.stop - slot.start)
@@ -331,11 +331,13 @@ class Adjustment:
         return _Part(normal, gradient, cost, slot.stop - slot.start + 2)
 
     def _from_tape(self, floor: FloorMap, key: int | str) -> Array:
+        """Compute a mark's x, y, yaw and side (x, y of a point) less those measured with a tape."""
         found, tape = floor.marks[key], self.floor.marks[key]
         names = ("x", "y", "yaw", "side")[: len(tape.prior_sd)]
         return np.array([getattr(found, name) - getattr(tape, name) for name in names])
 
     def _moved(self, found: Adjusted, step: Array) -> Adjusted:
+        """Return the unknowns with a step (size,) added."""
         marks = {
             key: found.floor.marks[key].moved(step[slot]) for key, slot in self._mark_slots.items()
         }

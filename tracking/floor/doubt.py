@@ -99,6 +99,7 @@ def doubts(problem: Adjustment, found: Adjusted) -> tuple[SuspectValue, ...]:
 
 
 def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[SuspectValue]:
+    """Yield each mark's place, then the side of all prints, then the focal length as suspects."""
     for key, mark in problem.floor.marks.items():
         loose = replace(mark, position_sd=_FAR * mark.position_sd)
         other = replace(problem, floor=problem.floor.with_marks({key: loose}))
@@ -117,6 +118,7 @@ def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[SuspectValue]:
 
 
 def _of_prints(problem: Adjustment, plain: _Weighed) -> SuspectValue:
+    """Compare with an alternative in which the sides of all floor markers may be far off."""
     loose: dict[int | str, Mark] = {
         m.marker_id: replace(m, side_sd=_FAR * m.side_sd) for m in problem.floor.markers
     }
@@ -132,6 +134,7 @@ def _of_prints(problem: Adjustment, plain: _Weighed) -> SuspectValue:
 
 
 def _of_lens(problem: Adjustment, plain: _Weighed) -> SuspectValue:
+    """Compare with an alternative in which the focal length may be far off."""
     other = replace(problem, camera=_loose(problem.camera))
     start = replace(other.start(), floor=plain.found.floor, poses=plain.found.poses)
     fit = _weighed(other, start)
@@ -150,7 +153,7 @@ def _loose(camera: Camera) -> Camera:
 
 
 def _weighed(problem: Adjustment, found: Adjusted) -> _Weighed:
-    """Fit for each of `_SPREADS` of edges; return the likeliest fit and the mean evidence."""
+    """Fit for each of `_SPREADS` of edges; return the likeliest fit, with the sum of evidences."""
     fits = []
     for sd in _SPREADS:
         tried = replace(problem, edge_sd=float(sd))

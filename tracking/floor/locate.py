@@ -15,6 +15,7 @@ from tracking.floor.marks import FloorMap
 from tracking.markers import Sighting
 
 _MISFIT_PX = 8.0
+"""Largest root mean square distance of the marks' points from their projection [px]."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,11 @@ def seen_keys(floor: FloorMap, view: FloorView) -> list[int | str]:
 
 
 def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[CameraPose, float]:
+    """Return the camera pose of least misfit over all starting poses, and the misfit (RMS) [px].
+
+    Raises:
+        FloorError: No mark or fewer than 4 points are seen, or there is no solution.
+    """
     keys = seen_keys(floor, view)
     if not keys:
         expected = ", ".join(str(key) for key in floor.marks)
@@ -121,6 +127,10 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
 
 
 def _starting_poses(camera: Camera, points: Array, pixels: Array) -> list[CameraPose]:
+    """Solve the PnP problem in closed form: all finite solutions, possibly none.
+
+    Points (n, 3) of one height count as a flat target; OpenCV wants such a target at z = 0.
+    """
     flat = np.ptp(points[:, 2]) < 1e-9
     level = points - [0.0, 0.0, points[0, 2] if flat else 0.0]
     # IPPE gives both solutions for a flat target, but for one view in a hundred none is finite.
@@ -175,12 +185,13 @@ def _polish(
     )  # fmt: skip
     J, r = jacobian(fit.x), residual(fit.x)
     misfit = float(np.sqrt(2 * np.mean(r**2)))
-    noise = max(misfit**2 / 2, 1e-4)
+    noise = max(misfit**2 / 2, 1e-4)  # variance of u and of v, at least that of 0.01 px
     covariance = noise * np.linalg.pinv(J.T @ J)
     return CameraPose(fit.x[:3], fit.x[3:], covariance), misfit
 
 
 def _explain(camera: Camera, floor: FloorMap, view: FloorView, misfit: float) -> None:
+    """Raise `FloorError` for a pose that does not fit, and say whether a mirrored map would."""
     other, other_misfit = _best_pose(camera, floor.mirrored(), view)
     if other_misfit < min(0.3 * misfit, _MISFIT_PX) or (
         other.position[2] > 0 and other_misfit < _MISFIT_PX

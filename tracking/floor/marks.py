@@ -159,6 +159,7 @@ class FloorMap:
 
 
 def _refuse_doubles(names: Sequence[str]) -> None:
+    """Raise `FloorError` if a name occurs more than once."""
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise FloorError(f"the floor has {twice[0]} more than once; each may lie in one place only")

@@ -49,6 +49,11 @@ def split_stands(views: Sequence[FloorView], *, jump_px: float = JUMP_PX) -> tup
 
 
 def _has_moved(stand: Sequence[FloorView], view: FloorView, jump_px: float) -> bool:
+    """Return whether the camera has moved since a stand: by the marks' shift from their means.
+
+    The median shift of all points must exceed `jump_px` plus 3 median standard deviations of a
+    shift [px]. Without a mark in common it has not.
+    """
     shifts, noises = [], []
     for key, pixels in view.pixels.items():
         before = [np.asarray(other.pixels[key]) for other in stand if key in other.pixels]
@@ -63,6 +68,7 @@ def _has_moved(stand: Sequence[FloorView], view: FloorView, jump_px: float) -> b
 
 
 def _typical(shift: Array) -> float:
+    """Compute the median length of shifts, given as raveled u, v of each point [px]."""
     # The median over points: a mark that is half hidden by a leg must not count as a movement.
     return float(np.median(np.linalg.norm(shift.reshape(-1, 2), axis=1)))
 

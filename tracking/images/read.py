@@ -73,6 +73,7 @@ def find_photos(folder: Path) -> tuple[Path, ...]:
 
 
 def _counting(name: str) -> list[tuple[int, int, str]]:
+    """Return a key for natural order: digits compare as numbers, and come after letters."""
     parts = re.split(r"(\d+)", name.lower())
     return [(1, int(part), "") if part.isdigit() else (0, 0, part) for part in parts]
 
@@ -119,6 +120,7 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
 
 
 def _raised_by_pillow(error: Exception) -> bool:
+    """Return whether an exception has passed through a function of Pillow."""
     frames = traceback.walk_tb(error.__traceback__)
     return any(frame.f_globals.get("__name__", "").startswith("PIL.") for frame, _ in frames)
 
@@ -164,6 +166,7 @@ def _upright(path: Path) -> PIL.Image.Image:
 
 
 def _refuse_unreadable(path: Path) -> None:
+    """Raise `PhotoError` unless the path is a regular, not too large file that is not HEIC."""
     # Neither a FIFO, which would block until there is a writer, nor a device.
     if not path.is_file():
         found = "it is not a regular file; remove it from the folder"
@@ -189,6 +192,7 @@ def _refuse_unreadable(path: Path) -> None:
 
 
 def _refuse_many_scans(path: Path) -> None:
+    """Raise `PhotoError` for a JPEG whose scan markers (FF DA) exceed `MOST_SCANS`."""
     data = path.read_bytes()
     scans = data.count(b"\xff\xda") if data.startswith(b"\xff\xd8") else 0
     if scans > MOST_SCANS:
@@ -197,12 +201,14 @@ def _refuse_many_scans(path: Path) -> None:
 
 
 def _refuse_large(path: Path, size: tuple[int, int]) -> None:
+    """Raise `PhotoError` for a picture of more than `MOST_PIXELS`; `size` is width, height [px]."""
     if size[0] * size[1] > MOST_PIXELS:
         found = f"{size[0]}x{size[1]} px are {size[0] * size[1] / 1e6:.0f}"
         raise PhotoError(path.name, _too_large(found))
 
 
 def _too_large(found: str) -> str:
+    """Say that a picture has too many pixels, of which `found` says how many."""
     return (
         f"{found} megapixels; at most {MOST_PIXELS / 1e6:.0f} are read: 12 are plenty, scale the "
         "photographs down"

@@ -97,6 +97,10 @@ def _common_polygon(
 
 
 def _times(start: float, numbers: NDArray[np.int64], polygon: Array, jitter: float) -> IntervalFit:
+    """Compute times and standard deviations from the centroid and spread of the polygon.
+
+    A jitter up to `jitter` either way adds the variance of a uniform distribution.
+    """
     centre, spread = _centroid(polygon)
     design = np.column_stack((np.ones(len(numbers)), numbers))
     variance = np.einsum("ni,ij,nj->n", design, spread, design) + jitter**2 / 3
@@ -128,4 +132,5 @@ def _centroid(polygon: Array) -> tuple[Array, Array]:
 
 
 def _outer(a: Array, b: Array) -> Array:
+    """Compute the outer product of each pair of vectors, shapes (n, 2), as (n, 2, 2)."""
     return np.einsum("ni,nj->nij", a, b)

@@ -164,6 +164,7 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
 
 
 def _numbers(table: Path, line: int, row: dict[str, str]) -> tuple[float, float]:
+    """Parse `t_s` and `t_sigma` of one row, 0 where empty; raise `TimesError` if not finite."""
     numbers, place = [], f"{table}, row {line} {_HEADER}"
     for column in ("t_s", "t_sigma"):
         text = row.get(column) or "0"

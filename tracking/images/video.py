@@ -69,6 +69,7 @@ def _refuse_playlist(path: Path) -> None:
 
 
 def _refuse_large(capture: cv2.VideoCapture, name: str) -> None:
+    """Raise `PhotoError` for frames of more than `MOST_PIXELS`."""
     width, height = (
         capture.get(key) for key in (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT)
     )
@@ -81,6 +82,7 @@ def _refuse_large(capture: cv2.VideoCapture, name: str) -> None:
 
 
 def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Image]:
+    """Yield the frames that are at least `every` [s] apart; raise PhotoError if there is none."""
     last, number = -np.inf, -1
     while capture.grab():
         number += 1

@@ -51,7 +51,7 @@ def factorised(diagonal: Array, upper: Array) -> Factors:
 
 
 def solve_blocks(factors: Factors, sides: Array) -> Array:
-    """Solve for right-hand sides of shape (n, b, k); return the same shape."""
+    """Solve M x = `sides` with a factorised matrix M; both of shape (n, b, k)."""
     n, b, k = sides.shape
     flat = sides.reshape(n * b, k)
     return cho_solve_banded((factors.banded, False), flat, check_finite=False).reshape(n, b, k)
@@ -64,7 +64,7 @@ def inverse_blocks(factors: Factors) -> tuple[Array, Array]:
     for k, block in enumerate(diagonal):  # forward elimination: inverses of the pivots
         pivot = block if k == 0 else block - upper[k - 1].T @ covariance[k - 1] @ upper[k - 1]
         covariance[k] = np.linalg.inv(pivot)
-    for k in reversed(range(len(upper))):
+    for k in reversed(range(len(upper))):  # back substitution, as in a Rauch-Tung-Striebel smoother
         gain = covariance[k] @ upper[k]
         following[k] = -gain @ covariance[k + 1]
         covariance[k] -= following[k] @ gain.T

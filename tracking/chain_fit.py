@@ -44,7 +44,7 @@ class SharedInput:
 
     @classmethod
     def none(cls, n: int) -> "SharedInput":
-        """Return no shared errors of n poses."""
+        """Return the input of n poses that share no errors, r = 0."""
         return cls(np.zeros((n, 3, 0)), np.zeros((0, 0)), np.zeros(0))
 
     @property
@@ -105,9 +105,16 @@ class Chain:
 
 @dataclass(frozen=True)
 class Solution:
-    """By segment states (n, 6), covariances (n, 6, 6) given u, and those with the next sample.
+    """Fitted states and shared errors u, with covariances; lists have one entry for each segment.
 
-    `factors` are what `solve_blocks` needs to solve again; `shared` is u, with its covariance.
+    Attributes:
+        states: Poses and twists, shape (n, 6).
+        covariances: Covariance of each state if u were known, shape (n, 6, 6).
+        following: The same between each state and the next, shape (n - 1, 6, 6).
+        factors: Cholesky factors of the states' normal equations, to solve them again.
+        shared: Estimate of u, shape (r,).
+        shared_covariance: Covariance of u, shape (r, r).
+        log_likelihood: Log marginal likelihood (Laplace) of the measured poses, up to a constant.
     """
 
     states: list[Array]
@@ -127,7 +134,11 @@ class _Point(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """A Gauss-Newton step: of the states by segment and of the errors, and what it came from."""
+    """A Gauss-Newton step of states (n, 6), by segment, and shared errors (r,).
+
+    `normal` (r, r) is the information on the errors with the states eliminated, `factors` those of
+    the states' normal equations by segment, and `cost` the cost before the step.
+    """
 
     states: list[Array]
     errors: Array
@@ -146,7 +157,7 @@ class _Fitted(NamedTuple):
 
 @dataclass(frozen=True)
 class ChainProblem:
-    """Segments and the errors they share."""
+    """Least-squares problem: segments of a walk, and what is `known` of the errors they share."""
 
     parts: list[Chain]
     known: SharedInput
@@ -156,7 +167,10 @@ class ChainProblem:
         return _Point([part.start() for part in self.parts], np.zeros(self.known.size))
 
     def fit(self, process: Process, start: _Point) -> _Fitted:
-        """Fit states and shared errors by Gauss-Newton, at most 8 steps, for given densities."""
+        """Fit states and shared errors by Gauss-Newton, at most 8 steps, for given noise densities.
+
+        It ends when a step changes the cost by less than 1e-4 of it, or of 1.
+        """
         weights = [np.linalg.inv(part.spread) for part in self.parts]
         links = [link_weights(np.diff(part.times), process) for part in self.parts]
         point, step, cost = start, self._step(start, weights, links), np.inf
@@ -184,7 +198,15 @@ class ChainProblem:
         )  # fmt: skip
 
     def gain(self, solved: Solution, by_error: Array) -> Array:
-        """Compute the derivative of the smoothed poses by errors, from that of the measured."""
+        """Compute how the smoothed poses move with errors that move the measured poses.
+
+        Args:
+            solved: The solution; u is held.
+            by_error: Derivative of the measured poses of all segments, shape (n, 3, q).
+
+        Returns:
+            Derivative of the smoothed poses, shape (n, 3, q).
+        """
         start, moved = 0, []
         for part, factors in zip(self.parts, solved.factors, strict=True):
             own = by_error[start : start + len(part.times)]
@@ -195,6 +217,11 @@ class ChainProblem:
         return np.concatenate(moved)
 
     def _step(self, point: _Point, weights: list[Array], links: list[tuple[Array, float]]) -> _Step:
+        """Compute the Gauss-Newton step of states and shared errors at a point.
+
+        The states of each segment are eliminated from the arrow of normal equations. What is left,
+        the Schur complement, is solved for the shared errors, and they give the states.
+        """
         known, (states, errors) = self.known, point
         pull = known.information @ errors
         normal = np.eye(known.size) + known.information
@@ -226,8 +253,10 @@ def _normal_blocks(
 ) -> tuple[Array, Array, Array, float]:
     """Assemble diagonal blocks (n, 6, 6), blocks above them (n-1, 6, 6), gradient, and cost.
 
-    The gradient (n, 6) is the right-hand side of the step; both hold the first twist's prior.
-    `missed` (n, 3) are the measured poses, shared errors added, less those of `state`.
+    The gradient (n, 6) is the right-hand side of the step; all but the blocks above the diagonal
+    include the first twist's prior. `missed` (n, 3) are the measured poses, shared errors added,
+    less those of `state`; `weights` (n, 3, 3) and `links` (n - 1, 6, 6) are the inverse covariances
+    of `missed` and of `link_error`.
     """
     n = len(state)
     diagonal, gradient = np.zeros((n, 6, 6)), np.zeros((n, 6))

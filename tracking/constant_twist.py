@@ -26,7 +26,7 @@ SWAY_SD = np.array([0.8e-3, 0.3e-3, 2e-3])
 About a mean over 4 s, walks of a simulated rigid body on six legs (reference data, tripod gaits)
 sway by 0.6 to 0.9 mm, 0.1 to 0.3 mm and 0.6 to 3 mrad."""
 SWAY_TIME = 0.5
-"""Time after which the sway is another one [s]."""
+"""Time after which the sway is independent of what it was [s]."""
 _LEAST_SD = 1e-6
 """Standard deviation added to each component of e [m, rad, m/s, rad/s]: far below any walk's, it
 keeps links of photographs that are microseconds apart from being stiffer than numbers can hold."""
@@ -59,8 +59,10 @@ def link_weights(dt: Array, process: Process) -> tuple[Array, float]:
     """
     q = np.array([process.travel, process.travel, process.turn])
     dt, least = dt[:, None], _LEAST_SD**2
+    # Variance of the change of sway: that of the difference of two once they are independent.
     sway = 2 * (process.sway * SWAY_SD) ** 2 * np.minimum(dt / SWAY_TIME, 1.0) + least
     pose, both, twist = q * dt**3 / 3 + sway, q * dt**2 / 2, q * dt + least
+    # pose·twist - both², written without differences, which would lose all digits at small dt
     determinant = q**2 * dt**4 / 12 + least * pose + sway * q * dt
     weights = np.zeros((len(dt), 6, 6))
     a, b = np.arange(3), np.arange(3, 6)

@@ -155,6 +155,7 @@ def plain(correction: Correction) -> dict[str, Any]:
 
 
 def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
+    """Return the observation of a photograph; raise `CorrectionError` where there is none."""
     if photo not in found:
         near = similar_name(photo, found)
         hint = f"; did you mean '{near}'?" if near else "; correct the name, or remove it"
@@ -187,6 +188,10 @@ def _moved(
     times: Mapping[str, tuple[float, float]],
     prior: BodyPrior,
 ) -> PoseObservation:
+    """Return the observation with the pose that a person set, level and at the prior's height.
+
+    Of an observation found there it keeps the time, and the derivatives by camera and lens.
+    """
     state = np.array([move.x, move.y, prior.height, 0.0, 0.0, move.yaw])
     covariance = np.zeros((6, 6))
     covariance[PLANAR, PLANAR] = np.square([move.position_sd, move.position_sd, move.yaw_sd])

@@ -41,9 +41,9 @@ class RobotMarker:
         position: Centre of the marker in the body frame: forward, left, up [m].
         yaw: Turn of the print's left-to-right direction from the body's x, counter-clockwise
             [rad]; -pi/2 when the print's top points ahead.
-        side_sd: Standard deviation of `side`, 0 if taken as exact, as of the next two [m].
-        position_sd: Standard deviation of x and of y of `position` [m].
-        yaw_sd: Standard deviation of `yaw` [rad].
+        side_sd: Standard deviation of `side`; 0 takes it as exact [m].
+        position_sd: Standard deviation of x and of y of `position`; 0 takes them as exact [m].
+        yaw_sd: Standard deviation of `yaw`; 0 takes it as exact [rad].
     """
 
     marker_id: int
@@ -65,7 +65,7 @@ class RobotMarker:
         return marker_corners(self.side, self.position, self.yaw)
 
     def derivatives_at(self, points_body: Array) -> dict[str, Array]:
-        """Compute how points that are printed on the marker move with what is stated of it.
+        """Differentiate points printed on the marker by its stated side, place and turn.
 
         Args:
             points_body: The points in the body frame, shape (n, 3) [m].
@@ -159,6 +159,7 @@ def detect(
 def _missing(
     floor: FloorMap, robot: MarkedRobot, found: Sequence[Sighting]
 ) -> dict[str, list[int]]:
+    """List by dictionary the numbers of the markers of floor and robot that are not yet found."""
     numbers = {sighting.marker_id for sighting in found}
     missing: dict[str, list[int]] = {}
     for number in floor.marker_ids:
@@ -192,6 +193,7 @@ def _near(
 
 
 def _no_floor(pixels: NDArray[np.uint8], floor: FloorMap) -> str:
+    """Say that no floor marker is seen, and which other dictionary's markers are, if any."""
     expected = ", ".join(str(number) for number in floor.marker_ids)
     message = f"none of the floor's markers ({expected} of '{floor.dictionary}') is seen"
     other = guess_dictionary(pixels)
@@ -235,6 +237,7 @@ def _observation(
     fit: FloorFit, photo: str, sighting: Sighting, robot: MarkedRobot,
     times: Mapping[str, tuple[float, float]], edge_sd: float | None,
 ) -> PoseObservation:  # fmt: skip
+    """Compute the robot's pose in one photograph; arguments as of `observe`."""
     pose = pose_of_marker(fit, fit.pose_of(photo), sighting, robot, edge_sd=edge_sd)
     t, t_sd = times[photo]
     return PoseObservation(photo, t, t_sd, pose, sighting.score, "marker", fit.stand_of(photo))

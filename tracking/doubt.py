@@ -24,8 +24,8 @@ Of 160 simulated sound walks two reach it, of 40 others two
 (`benchmarks.accuracy.planted_track_faults` at the tag `full-toolkit`). There are fewer alternatives
 than of the floor, so that chance lifts the highest of them less."""
 
-_BACKWARDS = np.radians(120)
-_SIDEWAYS = np.radians(40)
+_BACKWARDS = np.radians(120)  # from the heading, above which a robot moves backwards
+_SIDEWAYS = np.radians(40)  # from which to there it moves sideways
 _STRAY = 0.05  # m, travelled less than which a walk has no direction
 
 _FAR = {SIDE: (8.0, 32.0, 128.0), HEIGHT: (8.0,), TILT: (8.0,)}
@@ -80,11 +80,11 @@ def _log_likelihood(D: Array, b: Array, covariance: Array) -> tuple[float, Array
 
 
 def heading_doubts(track: Track) -> tuple[str, ...]:
-    """Return a question if the robot moves backwards or sideways by its marker.
+    """Warn in a sentence if the robot moves backwards or sideways by its marker's heading.
 
-    Args:
-        track: The track. Steps are weighted by their length; a walk of under 5 cm says nothing, nor
-            one without poses by the marker.
+    The direction is that of the sum of all steps in the body frame, gaps left out. Less than 40
+    degrees from the heading no sentence is returned, nor for a sum of under 5 cm, nor for a track
+    without poses by the marker.
     """
     if all(seen.source != "marker" for seen in track.observations):
         return ()

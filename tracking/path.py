@@ -177,7 +177,8 @@ def assemble_track(
             interval.
         process: Noise densities of the motion model; None to estimate them.
         start: Noise densities from which to start their estimate; None for a walking robot's.
-        average: As for `tracking.smooth.smooth`.
+        average: Whether estimated noise densities are means over the marginal likelihood; False
+            takes the likeliest ones, in half the time.
         again: Further poses in photographs that have one among `observations`, found with another
             template. As height and tilt of the body are the same there, they tell only of the
             errors that the two poses do not share.
@@ -258,12 +259,12 @@ def _from_difference(
     Returns:
         Information on u, shape (r, r), and gradient of minus the log likelihood at u = 0, (r,).
     """
-    apart = other.planar - one.planar
-    apart[2] = np.angle(np.exp(1j * apart[2]))
+    difference = other.planar - one.planar
+    difference[2] = np.angle(np.exp(1j * difference[2]))
     by_error = (one.by_error(shared, prior) - other.by_error(shared, prior))[PLANAR] @ root
     noise = one.pose.by_pixels(prior) + other.pose.by_pixels(prior)
     weighed = by_error.T @ np.linalg.inv(noise)
-    return weighed @ by_error, -weighed @ apart
+    return weighed @ by_error, -weighed @ difference
 
 
 def _inverse_where_known(G: Array, held: Array) -> Array:

@@ -129,9 +129,10 @@ class BodyPose:
     def with_prior(self, prior: BodyPrior) -> Mapping[str, Array]:
         """Return `by_cause` with the mean height and tilt of the prior that was used in the fit.
 
-        The estimate is (C^-1)^-1 times the sum of each information times its value; the prior's is
-        P^-1, so that the estimate moves with the prior's means by C P^-1. What moves it besides,
-        as through a template, is in `by_cause` and is added.
+        With C the covariance of the estimate, that is C times the sum of information times value
+        over all that is known. The prior's information is P^-1, so that the estimate moves with the
+        prior's means by C P^-1. What `by_cause` already has of these means, as through a template,
+        is added.
         """
         by_mean = self.covariance[:, HELD] @ np.linalg.inv(prior.covariance)
         by_cause = dict(self.by_cause)
@@ -225,6 +226,8 @@ def fit_pose(
         cause: -spread @ J.T @ derivative
         for cause, derivative in problem.by_cause(fit.x, points_by or {}, pixels_by or {}).items()
     }
+    # Laplace's approximation over height, roll and pitch: their covariance given x, y and yaw has
+    # the determinant of the whole covariance over that of x, y and yaw.
     log_dets = (
         -2 * float(np.log(np.diag(whiten)).sum())
         - float(np.linalg.slogdet(spread)[1])
@@ -234,6 +237,7 @@ def fit_pose(
 
 
 def _wrapped(state: Array) -> Array:
+    """Return a state with its yaw wrapped to -pi to pi."""
     wrapped = state.copy()
     wrapped[5] = np.arctan2(np.sin(state[5]), np.cos(state[5]))
     return wrapped
@@ -241,6 +245,12 @@ def _wrapped(state: Array) -> Array:
 
 @dataclass(frozen=True)
 class _PoseProblem:
+    """Least-squares problem of `fit_pose`: arguments as there.
+
+    `whiten` (2n, 2n) is the inverse of the pixels' Cholesky factor, which makes their residuals
+    independent and of variance 1.
+    """
+
     camera: Camera
     view: CameraPose
     points_body: Array

@@ -85,7 +85,7 @@ class SharedErrors:
 
     @property
     def size(self) -> int:
-        """Number of errors."""
+        """Number q of scalar errors, such as 9 of a lens and 6 of each stand, over all causes."""
         return len(self.covariance)
 
     def also(self, cause: str, covariance: Array) -> "SharedErrors":

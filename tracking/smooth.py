@@ -23,8 +23,9 @@ from tracking.chain_fit import Chain, ChainProblem, SharedInput
 from tracking.constant_twist import Process
 from tracking.errors import PathError
 
-_LONGEST_SEARCH = 200
-_USUAL, _USUAL_SD = Process(1e-4, 1e-3, 1.0), np.array([4.0, 4.0, 1.0])  # of their logarithms
+_LONGEST_SEARCH = 200  # poses of a segment from which densities are estimated
+# Prior of the densities and the sway: a walking robot's, and standard deviations of logarithms
+_USUAL, _USUAL_SD = Process(1e-4, 1e-3, 1.0), np.array([4.0, 4.0, 1.0])
 _OF_SD = np.array([0.5, 0.5, 1.0])  # powers that make standard deviations: densities are variances
 _AROUND = np.linspace(-8.0, 6.0, 15)  # logarithms of densities over the likeliest
 
@@ -141,6 +142,12 @@ def smooth(
 
 
 def _checked(t: ArrayLike, poses: ArrayLike, covariance: ArrayLike) -> tuple[Array, Array, Array]:
+    """Return times (n,), poses (n, 3) and covariances (n, 3, 3) as arrays of floats.
+
+    Raises:
+        PathError: There is no pose, shapes disagree, times do not increase, or a covariance is not
+            positive definite.
+    """
     times, measured = np.asarray(t, dtype=float), np.asarray(poses, dtype=float)
     spread = np.asarray(covariance, dtype=float)
     n = len(times)
@@ -161,6 +168,10 @@ def _checked(t: ArrayLike, poses: ArrayLike, covariance: ArrayLike) -> tuple[Arr
 
 
 def _require_definite(spread: Array) -> None:
+    """Raise `PathError` for the first covariance that is not positive definite.
+
+    Their correlations are tested, since metres and radians have no common scale.
+    """
     sd = np.sqrt(np.maximum(np.diagonal(spread, axis1=1, axis2=2), 0.0))
     unit = np.where(sd > 0, sd, 1.0)
     scaled = spread / (unit[:, :, None] * unit[:, None, :])
@@ -175,6 +186,10 @@ def _require_definite(spread: Array) -> None:
 
 
 def _segments(times: Array, gap: float | None) -> NDArray[np.int64]:
+    """Number the segments, which intervals longer than `gap` separate, shape (n,).
+
+    Without a `gap` it is 3.5 times the median interval.
+    """
     intervals = np.diff(times)
     if intervals.size == 0:
         return np.zeros(len(times), dtype=np.int64)
@@ -185,8 +200,12 @@ def _segments(times: Array, gap: float | None) -> NDArray[np.int64]:
 def _estimated(problem: ChainProblem, near: Process | None, average: bool) -> Process:
     """Estimate the noise densities by marginal likelihood, with a wide prior.
 
-    Of each segment the first 200 poses are used, segments of one or two poses are not. Without a
-    segment of three poses the densities are 1e-3 m²/s³ and 1e-2 rad²/s³.
+    Of each segment the first `_LONGEST_SEARCH` poses are used; segments of one or two poses are
+    not. Without a segment of three poses the densities are 1e-3 m²/s³ and 1e-2 rad²/s³.
+
+    The likeliest densities are searched from `near`, or from a walking robot's if it is None. With
+    `average`, each is replaced by the mean of its standard deviation over the likelihood along
+    `_AROUND`, the other two held at their likeliest.
     """
     used = [part.head(_LONGEST_SEARCH) for part in problem.parts if len(part.times) > 2]
     if not used:

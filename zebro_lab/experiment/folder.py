@@ -234,6 +234,7 @@ class ExperimentFolder:
                 manifest = replace(manifest, label=label)
 
     def _close_now(self, verdict: PointVerdict | None, reason: str) -> None:
+        """Write the verdict with the end record, and the journal's entry of the point."""
         recorder, self._recorder = self._recorder, None
         if recorder is None or self._start is None:
             return
@@ -256,6 +257,7 @@ class ExperimentFolder:
         )  # fmt: skip
 
     def _put(self, write: Callable[[], None], *, wait: bool = False) -> None:
+        """Queue a job; in simulated time, with `wait`, return once it is done."""
         job = _Job(write)
         try:
             self._jobs.put_nowait(job)
@@ -269,6 +271,7 @@ class ExperimentFolder:
             self._require_working()
 
     def _require_working(self) -> None:
+        """Raise SinkFailed if the thread has failed, ended, or hangs in one job."""
         started = self._thread.ident is not None
         if started and not (self._ending.is_set() or self._thread.is_alive()):
             self._failure = self._failure or "the thread that writes has ended unexpectedly"
@@ -296,6 +299,7 @@ class ExperimentFolder:
             self._do(job)
 
     def _do(self, job: _Job) -> None:
+        """Carry out a job and check the disk; store any failure."""
         self._busy_since = time.monotonic()
         try:
             job.write()

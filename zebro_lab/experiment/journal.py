@@ -117,6 +117,7 @@ class JournalWriter:
         self.append("cut short", cut.decode("utf-8", "backslashreplace"))
 
     def _write(self, line: bytes) -> None:
+        """Append a line and flush it to the disk; a line that was written in part is removed."""
         handle = os.open(self._file, os.O_WRONLY | os.O_CREAT, 0o644)
         try:
             before = os.lseek(handle, 0, os.SEEK_END)
@@ -247,6 +248,7 @@ def _entries(file: Path) -> Iterator[dict[str, Any]]:
 
 
 def _entry(line: bytes) -> dict[str, Any] | None:
+    """Parse a line as a JSON object; None if it is none."""
     try:
         entry = json.loads(line.decode("utf-8"))
     except (ValueError, RecursionError):

@@ -92,6 +92,7 @@ class EmergencyLatch:
         raise OSError(errno.EINVAL, "not a regular file", str(self._file))
 
     def _write(self, content: bytes, flags: int) -> None:
+        """Overwrite the file with the content, filled up to `SIZE` with blanks, and flush it."""
         handle = self._open(os.O_WRONLY | flags)
         try:
             os.pwrite(handle, content.ljust(SIZE - 1) + b"\n", 0)

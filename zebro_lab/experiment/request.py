@@ -29,6 +29,7 @@ Seed: TypeAlias = Annotated[
 
 
 def _masses(text: str) -> tuple[float, ...]:
+    """Parse --masses: numbers above 0, separated by commas [kg]."""
     try:
         masses = tuple(float(mass) for mass in text.split(","))
     except ValueError:

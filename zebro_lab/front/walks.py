@@ -166,4 +166,5 @@ def _model_request(
 
 
 def _walk_result(walked: Walked, folder: Path, draws: int) -> WalkResult:
+    """Return the result of a walk; draws are read from its folder, if there are any."""
     return WalkResult(walked.path, read_draws(folder) if draws else None, walked.notes)

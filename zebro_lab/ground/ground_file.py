@@ -58,7 +58,7 @@ def read_ground(file: Path) -> GroundFile:
     """
     table = read_settings(file, advice="expected a ground.toml with slope_deg or heights")
     beside = {key: table.value(key) for key in _MAP_KEYS if key in table}
-    gone = [key for key in _GONE if key in table]
+    gone = [key for key in _GONE if key in table]  # so is a list of numbers as step
     if gone or isinstance(beside.get("step"), list):
         key = gone[0] if gone else "step"
         raise table.fault("is no part of a ground; write its shape into a map of heights", key)
@@ -99,6 +99,7 @@ def _heights(
     file = Path(table.file).parent / name
     step = spec.quantity("step", "m", above=0.0, usual=0.2)
     x, y = spec.quantities("origin", 2, "m", usual=_FAR)
+    # From rows with the farthest first to indices that grow with x, then with y.
     height = np.ascontiguousarray(_in_metres(spec, file)[::-1].T)
     low, high = float(height.min()), float(height.max())
     m, n = height.shape
@@ -118,7 +119,10 @@ def _heights(
 
 
 def _in_metres(spec: SettingsTable, file: Path) -> Array:
-    """Read heights in their unit; without one, refuse heights that differ improbably in metres."""
+    """Read heights [m]; without a stated unit raise if they differ by more than `MOST_RELIEF`.
+
+    The rows of the result are those of the file, the farthest first.
+    """
     stated = "unit" in spec
     _, factor = spec.factor("unit", "m")
     height = factor * _height_table(file)
@@ -184,6 +188,7 @@ def _height_table(file: Path) -> Array:
 
 
 def _text(file: Path) -> str:
+    """Read a table's text in the likeliest encoding; raise `DataError` if it is none."""
     data = read_bytes(file, most=MOST_TEXT, advice=_ADVICE)
     encodings = possible_encodings(data)
     if not encodings:
@@ -195,6 +200,7 @@ def _text(file: Path) -> str:
 
 
 def _number(text: str) -> float:
+    """Parse a number; NaN if the text is none."""
     try:
         return float(text)
     except ValueError:

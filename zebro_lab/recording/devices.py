@@ -171,6 +171,10 @@ def _add_legs(
     twin: SimulatedLegs | None,
     rng: np.random.Generator,
 ) -> None:
+    """Add the robot's legs: replayed, simulated (`twin`) or real, and the gait that moves them.
+
+    Without a gait, legs that send their time in packets are read with pauses.
+    """
     address, play = str(request.zebro), request.play
     if address.startswith(REPLAY):
         if play is not None:

@@ -87,6 +87,10 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
 
 
 def _chosen(what: str, name: str | None, found: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the streams to replay of those found: all of legs or rig, one of IMUs.
+
+    That is the IMU `name`, else the first.
+    """
     if what == LEGS:
         return tuple(each for each in found if each == LEGS)
     if what == IMU:

@@ -121,6 +121,7 @@ class RecordScreen:
         return in_time(live.stop) if live is not None else not self._writing
 
     def _draw(self, live: Live, status: "RecordStatus") -> None:
+        """Draw status and newest values; start the display first, or clear a resized one."""
         values = self._values.update(status.folder, status.streams)
         size = self._console.size
         if not live.is_started:
@@ -152,6 +153,7 @@ class RecordScreen:
         return typed
 
     def _hang_up(self) -> None:
+        """Request the end because the terminal is lost, unless hangups are ignored."""
         if not self._outlives:
             self.signalled = True
             self._reason = self._reason or "terminal closed"

@@ -104,6 +104,7 @@ def _imu(request: ImuTwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def _rig(request: RigTwinRequest) -> Iterator[Served]:
+    """Serve the slip rig: a board on a port, or drives on a CAN bus and a load cell by UDP."""
     profile = load_rig_profile(request.profile)
     found = device_profiles(profile)
     rng = np.random.default_rng(0)

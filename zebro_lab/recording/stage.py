@@ -82,9 +82,11 @@ class Display:
                 self._hangs()
 
     def _hangs(self) -> None:
+        """Abandon the display because a call of it takes longer than `PATIENCE`."""
         self._end(f"the display hung for {PATIENCE:g} s, the recording continues without it")
 
     def _end(self, why: str) -> None:
+        """Abandon the display; report the reason if it is the first."""
         with self._changed:
             first, self._over = not self._over, True
             self._changed.notify()
@@ -92,6 +94,7 @@ class Display:
             self._give_up(why)
 
     def _run(self) -> None:
+        """Pass statuses to the display, in its thread, until it fails or is closed."""
         while (status := self._take()) is not None:
             try:
                 self._show(status)
@@ -287,6 +290,7 @@ def _played(path: Path) -> tuple[SampledReference, tuple[str, ...]]:
 
 
 def _duration(request: RecordRequest, play: SampledReference | None) -> float | None:
+    """Return the shorter of requested duration and gait to play [s]; None for no limit."""
     wanted = [] if play is None else [LEAD_IN + float(play.t[-1])]
     if request.duration is not None:
         if not request.duration > 0:
@@ -298,6 +302,7 @@ def _duration(request: RecordRequest, play: SampledReference | None) -> float | 
 
 
 def _manifest(request: RecordRequest, opened: OpenDevices, seed: int) -> RunManifest:
+    """Return the manifest of the run to begin; its seed is stated only if a device is simulated."""
     sources = {device.name: device.stream.source for device in opened.devices}
     return RunManifest(
         kind="walk" if request.rig is None else "slip-rig",

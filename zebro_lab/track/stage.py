@@ -43,8 +43,8 @@ PREVIEW = picture("track --preview")
 def preview(request: TrackRequest, file: Path) -> PhotoPreview:
     """Detect marks in the first photograph by time, draw them in a PNG, and return what was found.
 
-    If too many lack an EXIF time and no option gives times, it is the first by name. In a composite
-    picture no robot is searched.
+    If half of the photographs or more lack an EXIF time, and no time option is given, it is the
+    first by name. In a composite picture no robot is searched.
 
     Args:
         request: Options of `zebro-lab track`.
@@ -77,7 +77,7 @@ def preview(request: TrackRequest, file: Path) -> PhotoPreview:
 def _first_photos(request: TrackRequest, stack: ExitStack) -> PhotoSequence:
     """Open the photographs, of a video the first frame alone; sort them by name without times.
 
-    Names decide if half of the photographs or more lack an EXIF time and no option gives times.
+    Names decide if half of the photographs or more lack an EXIF time and no time option is given.
 
     Args:
         request: Options of `zebro-lab track`.

@@ -25,10 +25,10 @@ _TOO_COARSE = (
 def angles_from(log: LegLog, start: float) -> tuple[SampledReference | InexactLog, tuple[str, ...]]:
     """Shift a leg log to start at time zero; find the step of its angles, or their noise.
 
-    Angles with neither, or too coarse to tell noise from motion, are taken as they are. Noisy ones
-    are reconstructed within their noise, and encoder counts as lines through the changes of count.
-    If counts need over `JAGGED` times as many lines as angles with noise of the same size would,
-    they are taken as noisy.
+    Angles with neither are taken as they are, as are angles without a step that are too coarse to
+    tell noise from motion. Noisy ones are reconstructed within their noise, and encoder counts as
+    lines through the changes of count. If counts need over `JAGGED` times as many lines as noisy
+    angles would, they are taken as noisy.
 
     Args:
         log: The leg log.

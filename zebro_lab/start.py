@@ -53,6 +53,7 @@ def calibrate_slip() -> None:
 
 
 def _check_or_exit() -> None:
+    """Exit with an error message unless the packages are zebro-lab's own."""
     try:
         require_own_packages()
     except ImportError as error:

@@ -163,6 +163,7 @@ def run(request: RigRunRequest, output: Output = TEXT) -> None:
 
 
 def _say_latched(data: Path) -> None:
+    """Print on standard error that an emergency stop is latched, and how to go on."""
     say_in_time(
         f"an emergency stop is latched in {data}; inspect the rig, then repeat the command with "
         "--resume --reset-emergency",

@@ -87,6 +87,7 @@ class Keyboard:
             self._obey(line[:LONGEST_LINE])
 
     def _obey(self, line: bytes) -> None:
+        """Execute a typed line, a key of `KEYS` or a command in full; ignore any other."""
         key = line.decode("utf-8", "backslashreplace").strip()
         try:
             self._control.execute(KEYS.get(key, key), who="keyboard")

@@ -16,6 +16,7 @@ from zebro_lab.tables.columns import COLUMNS_FILE
 
 
 def _require_finite(request: WeighRequest) -> None:
+    """Raise `SettingsError` for a mass or gravity that is NaN or infinite."""
     given = {"--masses": request.masses, "--gravity": [request.gravity]}
     for option, numbers in given.items():
         for number in numbers:

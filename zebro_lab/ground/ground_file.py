@@ -208,6 +208,7 @@ def _number(text: str) -> float:
 
 
 def _require_size(rows: int, columns: int, file: Path) -> None:
+    """Raise `DataError` for fewer than two rows or columns, or over `MOST_PLACES` heights."""
     if min(rows, columns) < 2:
         raise DataError(
             f"has {rows} rows and {columns} columns of heights; expected two or more of each",

@@ -129,6 +129,7 @@ def _draw_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
 
 
 def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:
+    """Format a load level with the number of its blocks and the range of their loads [N]."""
     loads = blocks.normal_force[curve.rows]
     if not len(loads):
         return f"load {curve.load:.4g} N (no blocks)"

@@ -123,6 +123,7 @@ def _loads(curve: SlipCurve) -> tuple[float, ...]:
 
 
 def _draw_surface(figure: Figure, curve: SlipCurve) -> None:
+    """Draw traction over the tested slips and loads as a surface, on the right of the figure."""
     slip, load = np.meshgrid(
         sheet.slip_grid(np.asarray(curve.slip_range), 60), np.linspace(*curve.load_range, 25)
     )

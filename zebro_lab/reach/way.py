@@ -104,6 +104,7 @@ class Way:
 
 
 def _described(part: Part) -> str:
+    """Say what a part does: straight, on the spot (`bend` of 1 or -1), or along a curve."""
     strides = counted(part.strides, "stride")
     if part.bend == 0:
         return f"{strides} straight"

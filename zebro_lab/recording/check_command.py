@@ -65,6 +65,7 @@ def _require_answers() -> None:
 
 
 def _in_numbers(checked: "Checked") -> dict[str, object]:
+    """Return the result of a check for `--json`; keys end in the unit."""
     profile, found = checked.profile, checked.lift_off
     lift_off = found and {
         "angle_rad": found.theta, "height_difference_m": found.mismatch

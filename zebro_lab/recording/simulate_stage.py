@@ -142,6 +142,7 @@ def _profile_of_cell(name: str, cell: SimulatedLoadCell) -> Iterator[Path]:
 
 @contextmanager
 def _port(twin: ByteTwin, request: TwinRequest) -> Iterator[str]:
+    """Serve a twin at a pseudo-terminal or TCP port; yield the name of the port."""
     with PortServer(twin, as_socket=request.as_socket) as server:
         yield server.port
 

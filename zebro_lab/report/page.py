@@ -144,6 +144,7 @@ def out_of_range(row: Mapping[str, object]) -> Iterator[OutOfRange]:
 
 
 def _finite(value: object) -> float | None:
+    """Return a finite number as float; None for anything else, a bool included."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         return None
     return float(value)
@@ -226,6 +227,7 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
 
 @cache
 def _template() -> Template:
+    """Load the page's template; it escapes values and raises for names that are missing."""
     pages = Environment(
         loader=PackageLoader("zebro_lab.report", PAGES),
         autoescape=True,
@@ -261,11 +263,13 @@ def _count(run: ReportedRun, topic: str) -> str:
 
 
 def _pictures(part: ReportPart) -> list[Picture]:
+    """Embed the pictures of a part, marked as simulated if its source is."""
     simulated = is_simulated(part.source)
     return [embed(file, stage=part.name, simulated=simulated) for file in part.pictures]
 
 
 def _coverage_out_of_range(part: ReportPart, name: str) -> list[OutOfRange]:
+    """Return the coverages of the prediction of walk `name` that are out of range."""
     return list(out_of_range(part.manifest["runs"][name]["prediction"]))
 
 

@@ -133,6 +133,7 @@ def _webp(data: bytes, file: Path) -> tuple[str, bytes]:
 
 
 def _opened(data: bytes, file: Path) -> Image.Image:
+    """Open the bytes of a PNG; raise `DataError` if they are damaged."""
     try:
         return Image.open(io.BytesIO(data), formats=["PNG"])
     except UnidentifiedImageError as error:

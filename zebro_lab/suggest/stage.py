@@ -257,6 +257,7 @@ def _write(
 def _content(
     request: SuggestRequest, suggested: Suggested, read: Sequence[Path]
 ) -> Mapping[str, object]:
+    """Return the manifest's entries of a suggestion, JSON-serialisable."""
     settings = {
         "plan": suggested.plan.name,
         "calibration": suggested.calibration,

@@ -159,6 +159,7 @@ def _clicks(request: AnnotateRequest) -> Mapping[str, Mapping[str, Click]]:
 
 
 def _corrections(request: AnnotateRequest) -> tuple[Correction, ...]:
+    """Return the new corrections: moves, then flips, then deletions, each in the order given."""
     moves = [_move(text) for text in request.moves]
     flips = [Flip(photo) for photo in request.flips]
     deletes = [Delete(photo) for photo in request.deletes]
@@ -175,6 +176,7 @@ def _move(text: str) -> Move:
 
 
 def _pair(text: str, key: str) -> Click:
+    """Parse a pixel "U,V"; `key` is the option that an error names."""
     numbers = _numbers(text, key)
     if len(numbers) != 2:
         raise SettingsError(f"'{text}' is not a pixel U,V, as in 812,440", key=key)
@@ -193,6 +195,7 @@ def _numbers(text: str, key: str) -> list[float]:
 
 
 def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
+    """Raise if a template, click or correction is of a photograph that is not among `names`."""
     corrected = [each.photo for each in annotations.corrections]
     tops = [top.photo for top in annotations.templates]
     for photo in (*tops, *annotations.clicks, *corrected):

@@ -161,6 +161,7 @@ corners_px = []  # front left, front right, rear right, rear left
 
 
 def _template_values(template: MarkedTop) -> Mapping[str, Any]:
+    """Return the keys of a `[template]` table: photograph, corners [px] and sizes [m]."""
     plate = template.plate
     return {
         "photo": template.photo, "corners_px": template.corners_px,

@@ -74,6 +74,7 @@ def _covariance(fit: SettingsTable) -> Array:
 
 
 def _size(table: SettingsTable) -> tuple[int, int]:
+    """Read width and height of a photograph: whole numbers of at least 16 [px]."""
     width, height = table.quantities("size", 2, "dimensionless")
     if min(width, height) < 16 or width % 1 or height % 1:
         raise table.fault(f"is {width:g} x {height:g} px; expected integers of at least 16", "size")

@@ -64,6 +64,7 @@ def track(request: TrackRequest, preview: PreviewPng = None, output: Output = TE
 
 
 def _print_document(result: "TrackResult", output: Output) -> None:
+    """Print source, numbers and notes of a track as JSON, if that is asked for."""
     track = result.tracked.track
     content = {"folder": result.folder, "simulated": is_simulated(result.source)}
     numbers = {

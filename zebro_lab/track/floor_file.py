@@ -124,6 +124,7 @@ _LEGEND = (
 
 
 def _marker_line(marker: FloorMarker) -> Mapping[str, float]:
+    """Return a marker's keys as an inline TOML table, angles in degrees."""
     return _line(
         x=marker.x, y=marker.y, yaw_deg=np.degrees(marker.yaw), z=marker.z, side=marker.side,
         position_sd=marker.position_sd, yaw_sd_deg=np.degrees(marker.yaw_sd),

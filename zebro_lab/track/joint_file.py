@@ -76,6 +76,7 @@ def read_joint(
 
 
 def _of_others(file: Path, why: str) -> str:
+    """Return the warning that the file belongs to other poses, so that it is not used."""
     return (
         f"WARNING: {file} {why} than track.csv; errors of different poses are taken as "
         f"independent: {_AGAIN}, or delete the file"

@@ -206,6 +206,7 @@ def _draw(draft: Path, result: TrackResult, sequence: PhotoSequence, form: Pictu
 
 
 def _report(result: TrackResult) -> Mapping[str, object]:
+    """Return the manifest's entries on times, left-out photographs, uncertainty and floor."""
     fit = result.tracked.floor.fit
     return {
         "times": result.times,
@@ -235,6 +236,7 @@ def _parts(position: float, yaw: float) -> Mapping[str, float]:
 
 
 def _settings(inputs: TrackInputs, sequence: PhotoSequence) -> Mapping[str, object]:
+    """Return the options of a track for the manifest, JSON-serialisable, in SI."""
     request, robot = inputs.request, inputs.scene.robot
     marker = None if robot is None else robot.marker
     return {

@@ -46,6 +46,7 @@ def _with_start(state: ContactState) -> str:
 
 
 def _why_no_cycle(contacts: WalkContacts) -> str:
+    """Say why the contact states have no cycle."""
     if contacts.period is None:
         return "these leg angles have no cycle that repeats"
     if len(contacts.sequence.states) == 1:
@@ -123,6 +124,7 @@ def contact_document(contacts: WalkContacts) -> dict[str, object]:
 
 
 def _cycle_document(cycle: ContactCycle) -> dict[str, object]:
+    """Return a cycle of contact states for `--json`; keys end in the unit."""
     return {
         "period_s": cycle.period,
         "contacts": [named_legs(legs) for legs in cycle.states],

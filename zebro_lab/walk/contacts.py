@@ -164,5 +164,6 @@ def write_touchdowns(file: Path, downs: Sequence[Touchdown]) -> None:
 
 
 def _write(file: Path, rows: list[dict[str, Any]], names: list[str] | None = None) -> None:
+    """Write rows as CSV, with the columns `names`, else the keys of the rows."""
     table = pd.DataFrame(rows, columns=names)
     table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")

@@ -115,6 +115,7 @@ def _raise_if_stopped(watcher: Watcher) -> None:
 
 
 def _robot_settings(robot: Robot) -> dict[str, object]:
+    """Return the robot for the manifest, in SI, as `robot_of_walk` reads it."""
     return {
         "mass": robot.mass,
         "body_size": list(robot.body_size),

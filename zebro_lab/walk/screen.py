@@ -135,6 +135,7 @@ def _notes(walked: Walked, summary: WalkSummary) -> list[str]:
 
 
 def _summary(walked: Walked) -> WalkSummary:
+    """Summarise a walk; one of a program has several gaits, hence no mean speed or radius."""
     return summarise(walked.path, one_gait=not walked.segments)
 
 

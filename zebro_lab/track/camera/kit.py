@@ -283,6 +283,7 @@ def _ruler(width: float, bottom: float, length: float) -> tuple[list[Rectangle],
 
 
 def _instructions(size: tuple[float, float]) -> KitPage:
+    """Lay out the page of instructions, with a ruler of 170 mm."""
     width, height = size
     texts = [Text(20, height - 25, "Tracking kit", 18)]
     y = height - 37

@@ -94,6 +94,7 @@ def parse_board(text: str) -> Board:
 
 
 def _board_grid(text: str, part: str) -> tuple[int, int]:
+    """Parse COLUMNSxROWS, two or more each; `text` is the whole board, for the error."""
     columns, _, rows = part.partition("x")
     if not (columns.isdigit() and rows.isdigit() and int(columns) > 1 and int(rows) > 1):
         raise _board_error(text, f"'{part}' is not COLUMNSxROWS, 2 or more each")
@@ -101,6 +102,7 @@ def _board_grid(text: str, part: str) -> tuple[int, int]:
 
 
 def _board_length(text: str, part: str) -> float:
+    """Parse a length above 0 and below 1 m; `text` is the whole board, for the error."""
     length = option_to_si(part, "m", key="--board")
     if not 0 < length < 1:
         raise _board_error(text, f"'{part}' is not above 0 and below 1 m; give a unit, as in 25mm")

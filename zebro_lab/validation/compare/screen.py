@@ -43,6 +43,7 @@ def compared_document(done: Compared) -> dict[str, object]:
 
 
 def _table(done: Compared) -> Table:
+    """Return a table of both medians, their difference and the probability of the second."""
     one, other = done.comparison.names
     title = f"{other} minus {one}: medians, 90 % intervals"
     numbers = (one, other, "difference", "unit", f"P({other} is larger)")
@@ -58,6 +59,7 @@ def _table(done: Compared) -> Table:
 
 
 def _spelled(median: float, low: float, high: float) -> str:
+    """Format a median with its interval; without an interval if that has no width."""
     if low == high:  # of a curve without uncertainty
         return f"{median:.4g}"
     return f"{median:.4g} ({low:.4g} … {high:.4g})"

@@ -114,6 +114,7 @@ def _kind(path: Path) -> str:
 
 
 def _row(quantity: Quantity, difference: PathDifference) -> dict[str, object]:
+    """Return the row of a quantity in `comparison.csv`, by column."""
     row: dict[str, object] = {"quantity": quantity.name, "unit": quantity.unit}
     for which, name in enumerate(("first", "second")):
         median, low, high = quantity.quantiles(which)

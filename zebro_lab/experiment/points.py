@@ -82,7 +82,7 @@ def finished_points(data: Path, journal: Journal) -> Finished:
 
 
 def holds_points(data: Path) -> bool:
-    """Return whether any run folder in `data` is a point of an experiment, of whatever plan.
+    """Return whether any run folder in `data` is a point of an experiment, whatever its plan.
 
     Folders whose manifest cannot be read do not count.
     """

@@ -39,7 +39,7 @@ def slip_laws(
     Args:
         blocks: Block means of slip ratio and forces.
         laws: Each law, of k parameters, with posterior draws of them, shape (n_draws, k), by name.
-        reference: Name of the law that the others are compared with.
+        reference: Name of the law with which all laws are compared.
         residual: Measured traction less what the reference's fit expects of each block, with the
             errors of cell and rig, shape (n_blocks,) [N].
         load_levels: Nominal loads, shape (n_levels,) [N].

@@ -92,7 +92,7 @@ def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
 def _edges(values: Array) -> Array:
     """Return the edges of 40 bins over the finite values and a tenth of their range on either side.
 
-    The margin of a constant is a twentieth of its size, of a constant 0 it is 1.
+    If the values are constant, the margin is a twentieth of their size, or 1 if they are 0.
     """
     finite = values[np.isfinite(values)]
     margin = 0.1 * float(np.ptp(finite)) or 0.05 * float(abs(finite.flat[0])) or 1.0

@@ -203,7 +203,8 @@ def residual_page(
         sd: Standard deviation of each observation of x, y [m] and yaw [rad], shape (n, 3).
         score: Similarity score of each detection, shape (n,) [-].
         height: Height of the body's origin above the floor, shape (n,) [m].
-        source: How each pose was found, n of them: "marker", "body" or "hand"; others are crosses.
+        source: How each pose was found, n of them: "marker", "body" or "hand"; any other source is
+            drawn as crosses.
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 

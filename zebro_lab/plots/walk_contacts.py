@@ -59,7 +59,7 @@ def contact_states_chart(
 
     Args:
         path: The walk.
-        states: Its contact states, short ones joined.
+        states: Its contact states, in which short states are joined to the next.
         span: Begin and end of the time to draw [s].
         title: Title of the figure, which names the model; "(simulated)" is appended.
 

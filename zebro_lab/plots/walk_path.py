@@ -23,7 +23,7 @@ _SHADES = LinearSegmentedColormap.from_list("ground", ["#f7f3ea", "#d9c39a", "#9
 
 
 def draw_ground(axes: Axes, ground: Ground, low: Array, high: Array) -> None:
-    """Draw heights of the ground on a map, below all else; nothing of level ground.
+    """Draw heights of the ground on a map, below all else; level ground is not drawn.
 
     Limits of the axes are kept. Heights have a colour bar in millimetres.
 

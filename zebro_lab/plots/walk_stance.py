@@ -66,6 +66,6 @@ def _draw_leg(
 
 
 def _height(robot: Robot, theta: float) -> float:
-    """Compute the height of the hip of a leg on the ground, of a level body [m]."""
+    """Compute the hip height of a leg that stands on the ground at angle theta, level body [m]."""
     phi: Array | float = np.asarray(wrap_angle(np.pi / 2 - theta))
     return float(hip_height(phi, robot.leg_radius, robot.toe_beyond))

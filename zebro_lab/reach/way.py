@@ -71,7 +71,7 @@ class Way:
 
     @property
     def heading_error(self) -> float:
-        """Heading at the end less that asked for, from -pi to pi; NaN if none is [rad]."""
+        """Heading at the end minus the goal's, from -pi to pi; NaN if the goal has none [rad]."""
         if self.goal.heading is None:
             return float("nan")
         return float((self.end[2] - self.goal.heading + np.pi) % (2 * np.pi) - np.pi)

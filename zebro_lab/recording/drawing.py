@@ -166,7 +166,7 @@ class LiveValues:
 
 
 def _in_words(values: Array, unit: str) -> str:
-    """Format the newest leg angle within a turn, or other angle [deg]; of other values the mean."""
+    """Format values: leg angles [rad] and angles [deg] as the newest, other values as the mean."""
     if unit == "rad":  # of a leg
         return f"{float(np.degrees(values[-1])) % 360:3.0f} deg"
     return f"{float(values[-1] if unit == 'deg' else np.mean(values)):6.1f} {unit}"

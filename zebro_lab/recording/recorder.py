@@ -162,7 +162,7 @@ class RunRecorder:
         self._manifest = replace(self._manifest, duration=duration)
 
     def end(self, reason: str = "completed") -> None:
-        """Set the run's end to now if none is set, and its reason if that is `completed`."""
+        """Set the run's end to now unless it is set; replace its reason only if `completed`."""
         if self._ended is None:
             self._ended = self._clock.now()
         if self._reason == "completed":

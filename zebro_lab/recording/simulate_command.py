@@ -50,6 +50,7 @@ def _serve(
     duration: float | None,
     output: Output,
 ) -> None:
+    """Serve a simulated device and print its ports, until a stop or the duration ends it."""
     from zebro_lab.recording.simulate_stage import serve
 
     profile = request.profile

@@ -35,7 +35,7 @@ class Belonging:
 
 
 def belonging(sources: Sources) -> Belonging:
-    """Compare what each result read with what the others are now.
+    """Compare the files that each result was made from with those of the other results now.
 
     A result is compared by the hash of its file now; what a manifest does not state is not judged.
     """
@@ -138,7 +138,7 @@ def _together(sources: Sources) -> Iterator[str]:
 
 
 def _changed(sources: Sources) -> Iterator[str]:
-    """Say which of the files that others are made from are not as they were written."""
+    """Say which slip laws, fits of walks, paths and tracks were changed since they were written."""
     for part in sources.parts:
         for name in (SLIP_TOML, WALKS_TOML, PATH_CSV, TRACK_CSV):
             yield from changed_output(part.folder / name)

@@ -274,7 +274,7 @@ def _coverage_out_of_range(part: ReportPart, name: str) -> list[OutOfRange]:
 
 
 def _judged(sources: Sources) -> Iterator[tuple[str, ReportPart, str]]:
-    """Yield name of the run, validation, and the walk's name in this, of every walk validated.
+    """Yield every validated walk: name of the run, validation, and name of the walk in that.
 
     A run's own validation comes before one of several runs together.
     """

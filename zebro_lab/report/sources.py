@@ -191,7 +191,10 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
 
 
 def _run(folder: Path) -> ReportedRun:
-    """Read a run and its parts; of the slip rig none, of a track alone those that are present."""
+    """Read a run and its parts.
+
+    A run of the slip rig has no parts; a run with a track alone has only those that are present.
+    """
     recorded = _read(folder / MANIFEST_FILE) if (folder / MANIFEST_FILE).is_file() else {}
     if recorded.get("kind") == "slip-rig":
         return ReportedRun(folder, recorded, {})

@@ -115,7 +115,7 @@ def with_points(text: str, plan: Plan, *, file: Path) -> str:
         file: File of the text, for messages.
 
     Raises:
-        DataError: The result is not that plan, as of a text that states its points in an unusual
+        DataError: The result is not that plan, because the text states its points in an unusual
             way.
     """
     points = plan.points
@@ -143,7 +143,7 @@ def with_points(text: str, plan: Plan, *, file: Path) -> str:
 
 
 def _numbers(values: tuple[float, ...]) -> Array:
-    """Return an array of numbers, of many with several in a line."""
+    """Return a TOML array of numbers, with line breaks if there are over `_LINE`."""
     rows = [values[i : i + _LINE] for i in range(0, len(values), _LINE)]
     lines = ",\n    ".join(", ".join(map(repr, row)) for row in rows)
     body = f"[{lines}]" if len(rows) == 1 else f"[\n    {lines},\n]"

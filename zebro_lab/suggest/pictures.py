@@ -32,7 +32,7 @@ _POINTS: Final = 200
 def draw_suggested(file: Path, suggested: Suggested) -> None:
     """Draw the curve at the smallest and largest suggested load, whole and near zero slip.
 
-    Bands are those of the law's parameters, of 90 % at each slip, by the linear prediction.
+    Bands hold 90 % at each slip, for the law's parameters alone, by linear error propagation.
     Suggested slips are marked on the curve, larger where there are several points.
 
     Args:

@@ -60,7 +60,7 @@ def annotate(request: AnnotateRequest) -> Annotations:
 
 
 def photo_names(origin: Path) -> tuple[str, ...]:
-    """List the file names of the photographs in a folder; of a video or picture its own name.
+    """List the file names of the photographs in a folder; a video or picture is the only name.
 
     Raises:
         NotFound: `origin` does not exist.

@@ -86,6 +86,7 @@ def _marker(markers: SettingsTable, number: str, common: Mapping[str, float]) ->
 
 
 def _point(points: SettingsTable, name: str, common: Mapping[str, float]) -> FloorPoint:
+    """Read the point of this name; `common` gives the standard deviation that it lacks."""
     table = points.table(name)
     return FloorPoint(
         name,

@@ -156,7 +156,9 @@ class TrackInputs:
             )
 
     def counted_times(self, sequence: PhotoSequence) -> CountedTimes:
-        """Count the photographs' times from the track's origin; none yet for a composite's.
+        """Count the photographs' times from the track's origin.
+
+        The exposures of a composite picture have no times until they are found.
 
         Raises:
             SettingsError, TimesError: As in `counted_from`.

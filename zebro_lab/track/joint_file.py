@@ -42,7 +42,7 @@ def write_joint(
 def read_joint(
     track_csv: Path, t: Array, covariance: Array
 ) -> tuple[JointCovariance, tuple[str, ...]]:
-    """Read the joint covariance beside a `track.csv`, of the poses that the table has.
+    """Read the joint covariance beside a `track.csv`, as far as the table has its poses.
 
     Args:
         track_csv: The table, with or without `track_covariance.npz` beside it.

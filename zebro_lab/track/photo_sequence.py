@@ -114,7 +114,7 @@ def open_photos(
 
 
 def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
-    """Scale the lens to the size of most of the photographs; as given if none is readable.
+    """Scale the lens to the size of most of the photographs, unless none is readable.
 
     Args:
         camera: The lens as calibrated.

@@ -75,7 +75,7 @@ def preview(request: TrackRequest, file: Path) -> PhotoPreview:
 
 
 def _first_photos(request: TrackRequest, stack: ExitStack) -> PhotoSequence:
-    """Open the photographs, of a video the first frame alone; sort them by name without times.
+    """Open the photographs, or the first frame of a video; without times, sort them by name.
 
     Names decide if half of the photographs or more lack an EXIF time and no time option is given.
 
@@ -99,7 +99,8 @@ class TrackResult:
     Attributes:
         folder: The track folder.
         tracked: Track, floor fit, left-out photographs and notes.
-        photos: Number of photographs, left-out ones included; of a composite, tracked exposures.
+        photos: Number of photographs, including those left out; for a composite picture, number of
+            its tracked exposures.
         source: Source of the photographs: "real", "sim:what" or "unknown".
         times: Source and origin of the times, in words.
         is_composite: Whether the photographs are exposures of one picture.

@@ -28,8 +28,8 @@ def unit_warning(
     Args:
         reference: Positions, shape (n, d) [m], and their name for the warning.
         estimate: The same of positions at the same times.
-        near: Largest relative difference of the ratio of extents from a factor of `_LARGE` or more;
-            from smaller ones it is `_CLOSE` at most [-].
+        near: Largest relative difference of the ratio of extents from a factor of `_LARGE` or more.
+            For smaller factors the limit is `_CLOSE`, or `near` if that is less [-].
     """
     spread = [float(np.linalg.norm(path.std(axis=0))) for path, _ in (reference, estimate)]
     if min(spread) <= 0:

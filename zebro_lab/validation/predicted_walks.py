@@ -148,7 +148,7 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
 def read_predicted_walks(
     pairs: Sequence[tuple[Path, Path]], *, notes: tuple[str, ...] = ()
 ) -> list[PredictedWalk]:
-    """Read predictions and tracks of walks; of pairs with equal content the first alone.
+    """Read predictions and tracks of walks; only the first of pairs with equal content.
 
     Args:
         pairs: Paths of prediction and track of each walk.

@@ -60,7 +60,7 @@ class JudgedPair:
 
     @property
     def title(self) -> str:
-        """Both files by the fewest parts of their paths that tell them apart."""
+        """Names of both files, with as few parts of their paths as distinguish them."""
         files = [each.file.absolute() for each in (self.estimate, self.reference)]
         if files[0] == files[1]:
             return f"{files[0].name} against itself"
@@ -88,7 +88,8 @@ def judge_pair(
         estimate: The estimate.
         max_difference: Largest difference of the times of a matched pair [s].
         time_offset: Time added to the reference's times [s].
-        distances: Distances of relative errors [m]; empty for round ones of the reference's length.
+        distances: Distances of relative errors [m]; if empty, round distances are chosen by the
+            length of the reference.
         correct_scale: Whether the estimate is first multiplied by the scale that fits best, in the
             plane and in space each.
 

@@ -112,7 +112,10 @@ def write_path(file: Path, path: WalkPath) -> None:
 
 
 def by_axis(values: Array) -> Array:
-    """Return values as columns; of vectors of the legs, shape (n, 6, k), all legs' x first."""
+    """Return values as columns, shape (n, m).
+
+    Vectors of the legs, shape (n, 6, k), become the x of all legs, then their y, and so on.
+    """
     values = np.asarray(values, dtype=float)
     return values if values.ndim < 3 else np.swapaxes(values, 1, 2).reshape(len(values), -1)
 

@@ -102,7 +102,7 @@ def _draw(request: PictureRequest, walked: Walked, folder: Path, watcher: Watche
 
 
 def _shown(request: PictureRequest, walked: Walked) -> PictureRequest:
-    """Return the pictures to draw; of a program the whole walk is shown if no window is asked."""
+    """Return the pictures to draw; without a window, pictures of a program show the whole walk."""
     t, drawn = walked.path.t, request.figures or request.contacts
     if request.window is not None or not (drawn and walked.segments):
         return request

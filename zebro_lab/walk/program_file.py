@@ -137,7 +137,7 @@ def _gait(table: SettingsTable, groups: Gait, leg_arc: float) -> tuple[CycleGait
 
 
 def _times(table: SettingsTable, groups: Gait) -> tuple[float, float]:
-    """Return ground and flight time, of a cycle shared evenly by the groups if that is given."""
+    """Return ground and flight time [s]: both as given, else a cycle that groups share evenly."""
     if any(name in table for name in _TIMES):
         if "cycle" in table:
             raise table.fault("found beside ground_time or flight_time; give either", "cycle")

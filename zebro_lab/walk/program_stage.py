@@ -103,7 +103,7 @@ def _named(file: Path) -> str:
 
 
 def _slip(program: Program, request: ModelRequest) -> NamedSlip | None:
-    """Return the slip law with which headings and places are found; None if none is."""
+    """Return the slip law with which headings and places are found; None if no segment has one."""
     if not program.needs_walking:
         return None
     if request.model != _WALKS or request.slip is None:

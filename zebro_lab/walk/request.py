@@ -180,7 +180,7 @@ class ModelRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Values of `--slip`, `--robot` and `--ground`, as paths, of those that are given.
+        """Given values of `--slip`, `--robot` and `--ground`, as paths.
 
         `--slip thesis` is left out; `coulomb:…`, although no file, is not.
         """

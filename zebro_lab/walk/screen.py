@@ -240,7 +240,7 @@ def slip_lines(walked: Walked, summary: WalkSummary, support: Support) -> list[s
 
 
 def work_lines(work: LegWork) -> list[str]:
-    """Say what work the legs' motors do and take back; nothing of a model without."""
+    """Say what work the legs' motors do and take back; nothing if the model computes no work."""
     if np.isnan(work.done):
         return []
     return [

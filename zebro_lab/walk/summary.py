@@ -26,9 +26,9 @@ class WalkSummary:
         duration: Duration of the walk [s].
         end: x, y and yaw of the last pose in the inertial frame [m, m, rad].
         length: Length of the path over the ground [m].
-        strides: Number of whole strides that speed, yaw rate and radius are means over; 0 if there
-            is none, and they are means over the whole walk; 0, and the three NaN, of a walk of
-            several gaits.
+        strides: Number of whole strides that speed, yaw rate and radius are means over. If there is
+            none it is 0, and they are means over the whole walk. For a walk of several gaits it is
+            0, and the three are NaN.
         speed: Mean speed along the circle through the poses between strides [m/s].
         yaw_rate: Mean yaw rate, positive to the left [rad/s].
         radius: Mean radius of the circle [m], positive to the left; infinite without any turn, NaN

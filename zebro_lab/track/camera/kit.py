@@ -158,7 +158,7 @@ def squares_of(board: Board) -> tuple[int, int]:
     """Return the numbers of squares along a row and along a column of a board.
 
     Args:
-        board: The board; of a checkerboard `columns` and `rows` count inner corners.
+        board: The board; `columns` and `rows` of a checkerboard count its inner corners.
     """
     more = 0 if isinstance(board, CharucoBoard) else 1
     return board.columns + more, board.rows + more

@@ -63,7 +63,7 @@ def read_logged_poses(
 
 
 def _parts(message: LoggedMessage) -> Parts:
-    """Yield topic, header and content of each pose of a message; none of static transforms.
+    """Yield topic, header and content of each pose of a message; skip static transforms.
 
     A transform's topic is completed by its child frame, as in `/tf:base_link`.
     """

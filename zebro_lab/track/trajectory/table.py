@@ -61,7 +61,7 @@ _UNIT: Final = re.compile(r"[\[(][^\])]*[\])]\s*$")
 
 
 def named_columns(headers: Sequence[str]) -> Mapping[str, str]:
-    """Return the header of each column of a trajectory by canonical name; of several the first.
+    """Return the header of each column of a trajectory by canonical name; the first if several.
 
     >>> named_columns(["#timestamp [ns]", "p_RS_R_x [m]"])["t_s"]
     '#timestamp [ns]'

@@ -185,7 +185,7 @@ def _band(forces: Array) -> Array:
     """Compute lower edge, mean and upper edge of the simultaneous band of draws.
 
     Args:
-        forces: Forces, shape (draws, loads, slips) [N]; of one draw all three are the draw itself.
+        forces: Forces, shape (draws, loads, slips) [N]; if there is one draw, all three equal it.
 
     Returns:
         Forces, shape (3, loads, slips) [N].

@@ -27,7 +27,7 @@ class Calibrated:
 
     Attributes:
         slip: Its `slip.toml`.
-        posterior: Blocks, law and priors, not straightened.
+        posterior: Blocks, law and priors; coordinates are independent a priori.
         files: Files that were read.
         notes: Notes, one line each.
     """

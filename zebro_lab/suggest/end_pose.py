@@ -81,7 +81,7 @@ def end_poses(
 
     Args:
         walk: The walk.
-        posterior: Law and priors, not straightened.
+        posterior: Law and priors; coordinates are independent a priori.
         z: Draws of the coordinates, shape (n, d).
         executor: Where draws are walked; None for here.
 
@@ -129,7 +129,7 @@ def end_pose_target(
     Args:
         name: Name of the target.
         walk: The walk.
-        posterior: Law and priors, not straightened.
+        posterior: Law and priors; coordinates are independent a priori.
         z: Draws of the coordinates, of which the first `WALKED` are walked, shape (w, d).
         n_draws: Number of draws around which the target is asked for.
         executor: Where draws are walked; None for here.

@@ -41,11 +41,11 @@ class Knowledge:
     """What is known before further runs, and how they are measured.
 
     Attributes:
-        posterior: The calibration's blocks, law and priors, not straightened.
+        posterior: The calibration's blocks, law, priors; coordinates are independent a priori.
         draws: Draws of its coordinates around which designs are judged, shape (m, d).
         now: Information of the priors and of the calibration's blocks, shape (m, d, d).
         before: Information to which further runs add theirs: `now`, or that of the priors alone.
-        conditions: Moments of blocks of further runs.
+        conditions: Sizes and moments of blocks, medians of the calibration's, for further runs.
         rate: Samples a second [Hz].
     """
 
@@ -82,7 +82,7 @@ def knowledge_of(
     """Return what a calibration knows.
 
     Args:
-        posterior: Blocks, law and priors, not straightened.
+        posterior: Blocks, law and priors; coordinates are independent a priori.
         z: Draws of its coordinates in random order, more than `DRAWS`, shape (w, d).
         rate: Samples a second of further runs [Hz].
         alone: Whether further runs are fitted without the calibration's blocks.

@@ -143,13 +143,13 @@ def measure_slips(
 
 
 def beyond_the_peak(peaks: Array, slip: Array) -> Array:
-    """Space slip ratios from the smallest peak's slip to four times the largest.
+    """Space eight slips in logarithm, from the smallest peak's slip to four times the largest.
 
-    They have the larger sign of the tested slips.
+    They have the sign of the side on which tested slips are larger.
 
     Args:
-        peaks: Slip of the peak at each load; infinite where there is none, which counts as the
-            largest tested slip, shape (m,) [-].
+        peaks: Slip of the peak at each load; one beyond the largest tested slip, or infinite where
+            there is none, counts as the largest tested slip, shape (m,) [-].
         slip: Tested slip ratios, shape (n,) [-].
     """
     tested = np.minimum(peaks, np.abs(slip).max())

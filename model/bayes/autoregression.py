@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Autoregressive noise of runs: how it follows that before, and its size in each run."""
+"""Autoregressive noise of runs, AR(p): its coefficients, and its variance in each run.
+
+A run is a stretch of rows with the same value in `run`; it begins wherever that changes.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +11,7 @@ from model.arrays import Array
 
 
 def centred(values: Array, run: NDArray[np.intp]) -> Array:
-    """Take the mean of its run from each value, shape (n,) or (n, k)."""
+    """Subtract the mean of its run from each value or row, shape (n,) or (n, k)."""
     starts = np.flatnonzero(np.diff(run, prepend=-1))
     size = np.diff(np.append(starts, len(run)))
     mean = (np.add.reduceat(values, starts, axis=0).T / size).T
@@ -18,10 +21,15 @@ def centred(values: Array, run: NDArray[np.intp]) -> Array:
 def whitened(
     columns: Array, run: NDArray[np.intp], memory: Array
 ) -> tuple[Array, NDArray[np.intp]]:
-    """Take from each row what `memory` expects by those before, and the run's mean.
+    """Whiten rows: subtract what AR coefficients predict from the rows before, then the run's mean.
+
+    Args:
+        columns: Values in time order within each run, shape (n, k).
+        run: Run of each row, shape (n,).
+        memory: AR coefficients of the rows 1, 2, ... before, shape (p,).
 
     Returns:
-        The rows that have as many before them in their run, and their runs.
+        The rows but the first p of each run, shape (m, k), and their runs, shape (m,).
     """
     n = len(memory)
     white = columns[n:] - sum(
@@ -32,7 +40,15 @@ def whitened(
 
 
 def run_variances(rest: Array, run: NDArray[np.intp], n_runs: int) -> Array:
-    """Estimate the variance of the noise in each run, shape (n_runs,) [N^2]."""
+    """Estimate the variance of the noise in each run, shape (n_runs,) [N^2].
+
+    It is at least a thousandth of the median run's, also for a run without rows.
+
+    Args:
+        rest: Residuals less the mean of their run, shape (n,) [N].
+        run: Run of each residual, shape (n,).
+        n_runs: Number of runs.
+    """
     count = np.bincount(run, minlength=n_runs)
     own = np.bincount(run, rest**2, minlength=n_runs) / np.maximum(count - 1, 1)
     typical = float(np.median(own[count > 1])) if (count > 1).any() else 1.0
@@ -40,9 +56,17 @@ def run_variances(rest: Array, run: NDArray[np.intp], n_runs: int) -> Array:
 
 
 def memory_of(rest: Array, run: NDArray[np.intp], weight: Array, *, order: int) -> Array:
-    """Estimate how noise follows that before, from centred residuals of runs by weight, (order,).
+    """Estimate AR coefficients by the Yule-Walker equations, shape (order,).
 
-    What taking the mean has taken from the covariances of short runs is added again.
+    Autocovariances are pooled over runs by their weight. Subtracting a run's mean lowers all of
+    them by the variance of the mean, which is therefore estimated and added, in five iterations.
+    All zero if the residuals do not vary.
+
+    Args:
+        rest: Residuals less the mean of their run, shape (n,).
+        run: Run of each residual, shape (n,).
+        weight: Weight of each run, shape (n_runs,).
+        order: Number of coefficients.
     """
     lags = range(order + 1)
     pairs = [(np.flatnonzero(run[lag:] == run[: len(run) - lag]), lag) for lag in lags]

@@ -156,9 +156,10 @@ def conclude(
 
 
 def _known(fit: PreparedFit, draws: Draws) -> dict[str, float]:
-    """Compute how far prior and data together narrow the default prior of parameters with another.
+    """Compute the contraction of each parameter with a stated prior, relative to its default prior.
 
-    A parameter that somebody knows well beforehand is not weakly identified if the data add little.
+    That is 1 - posterior over prior variance, by name. A parameter that somebody knows well
+    beforehand is not weakly identified if the data add little to the stated prior.
     """
     names = [p.name for p in fit.posterior.parameters]
     stated = fit.stated.names([p.name for p in fit.posterior.free])

@@ -329,5 +329,8 @@ def choose_by_runs(
 
 
 def _error_of_sum(differences: np.ndarray) -> float:
-    """Compute the standard error of the sum of one difference a run, from their own scatter."""
+    """Compute the standard error of the sum of one difference a run, from their own scatter.
+
+    Unlike `_standard_error` by the standard deviation over n, not n - 1.
+    """
     return float(np.sqrt(len(differences)) * np.std(differences))

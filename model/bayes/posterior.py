@@ -77,7 +77,12 @@ def default_priors(
 
 
 def _of_parameter(parameter: Parameter) -> Prior:
-    """Choose a prior by a parameter's bounds and typical values, broad where it states none."""
+    """Choose a prior by which of a parameter's bounds are finite, and its `typical` values.
+
+    Both finite: uniform between them. None: normal, `typical` its mean and standard deviation, (0,
+    1) if not stated. Only the lower, or only the upper: log-normal in the distance from that bound,
+    `typical` its median and the standard deviation of its logarithm, (1, 1.5) if not stated.
+    """
     bounded = np.isfinite([parameter.lower, parameter.upper])
     if bounded.all():
         return Uniform(parameter.lower, parameter.upper)

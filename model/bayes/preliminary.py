@@ -49,8 +49,10 @@ def least_squares_values(
         return np.array([prior.value(x) for prior, x in zip(chosen, z, strict=True)])
 
     def misfit(z: Array) -> Array:
+        """Return scaled residuals, then z, which is standard normal a priori."""
         with np.errstate(all="ignore"):
             force = law.force(blocks.slip, blocks.normal_force, values(z))
+        # A trial may be beyond all numbers: NaN counts as no force, infinity as the largest float.
         return np.append((blocks.traction_force - np.nan_to_num(force)) / scale, z)
 
     def valid(z: Array) -> bool:

@@ -17,7 +17,7 @@ from model.slip.law import SlipLaw
 SLIP_BINS = 8
 FAR_SCORE = 2.0  # below, a run mean is not far out, however close the others are
 CROSSED = 2.0  # groups of slip that a run crosses on average, from which runs are sweeps
-MISFIT_P = 1e-3  # p-value below which a misfit is none of chance
+MISFIT_P = 1e-3  # p-value below which a misfit is significant
 
 
 @dataclass(frozen=True)
@@ -34,9 +34,9 @@ class Residuals:
         inside: Fraction of run means within their predictive 90 % interval [-].
         inside_p: Two-sided binomial p-value of that fraction against 90 % [-].
         misfit: Root-mean-square residual that is a function of slip, over the largest predicted
-            traction at its load: of all loads together, or of the worst load if that is none of
-            chance. Repeated measurements do not average it away; 0 if no two runs share a slip and
-            load [-].
+            traction at its load: of all loads together, or of the worst load if that is
+            significant. Repeated measurements do not average it away; 0 if no two runs share a slip
+            and load [-].
         misfit_p: p-value of the F test of `misfit` against the scatter between runs, of a single
             load times the number of loads; NaN if no two runs share a slip and load [-].
         detectable: Misfit over all loads that would have the p-value `MISFIT_P`, at the scatter
@@ -193,7 +193,10 @@ def lag_correlation(values: Array, run: NDArray[np.intp], lag: int) -> tuple[flo
 
 @dataclass(frozen=True)
 class _Repeating:
-    """Standard deviation of what repeats, its p-value, and the least one of p-value `MISFIT_P`."""
+    """Result of an analysis of variance: as the fields of `Residuals` with the same meaning.
+
+    `detectable` is the misfit that would have the p-value `MISFIT_P`.
+    """
 
     misfit: float
     p: float
@@ -213,10 +216,10 @@ def _structure(blocks: SlipBlocks, residual: Array, predicted: PredictedForces) 
 
     Returns:
         What repeats, over the largest predicted traction; 0 and NaN if no group has two runs. It is
-        that of one load alone if that is larger and none of chance: over all loads together the
-        small ones hardly count. The largest traction at one load is the load times the largest
-        share of the load at any; its p-value is times the number of loads. Detectable is what
-        would be found over all loads.
+        that of one load alone if that is larger and significant: over all loads together the small
+        ones hardly count. For one load the largest traction is that load times the largest ratio
+        of traction to load at any, and the p-value is multiplied by the number of loads.
+        `detectable` is that over all loads.
     """
     force, slope = predicted.force.mean(axis=0), predicted.slope.mean(axis=0)
     levels = load_levels(blocks)
@@ -269,16 +272,16 @@ def _repeating(
 
 
 def _analysed(values: Array, design: Array, taken: int, shared: float) -> _Repeating | None:
-    """Test what a design explains of values against the rest, with degrees of freedom / `shared`.
+    """Test by an F test what groups explain of values against the rest.
 
     Args:
-        values: Shape (n,).
-        design: Shape (n, groups).
-        taken: Degrees of freedom that are no longer in the values.
-        shared: Number of values that count as one.
+        values: Mean of each run in each group, shape (n,).
+        design: Indicator of each group in columns, shape (n, groups).
+        taken: Degrees of freedom already taken out of the values.
+        shared: Number of values that count as one, by which degrees of freedom are divided.
 
     Returns:
-        None if no degree of freedom is left.
+        The result; None if no degree of freedom is left.
     """
     solution, _, rank, _ = np.linalg.lstsq(design, values, rcond=1e-9)
     spare = len(values) - taken - int(rank)

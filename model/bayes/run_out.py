@@ -10,9 +10,8 @@ and h as in `slip_per_radius_error`. So the residual of the traction is, to firs
     e = -f_\kappa h\,(\delta_g - \delta_l) + \text{what the law and the load cell are wrong by}
       + \text{noise},
 
-linear in the eight coefficients. They are found by least squares, with the prior of each, on means
-of a few samples, short against a turn: block means over a turn have lost them. What is the same in
-a whole run tells nothing of them.
+linear in the eight coefficients. They are found by least squares, with their prior, on means of a
+few samples: means over a turn have lost them, and what a run has throughout tells nothing of them.
 """
 
 from dataclasses import dataclass, replace
@@ -155,6 +154,7 @@ def without_run_out(samples: SlipSamples, found: RunOut) -> SlipSamples:
 
 
 def _corrected(samples: SlipSamples, coefficients: Array) -> SlipSamples:
+    """Correct slip for run-out of the given coefficients, shape (m,) [m], to first order."""
     return replace(samples, slip=samples.slip + _waves(samples, samples.slip) @ coefficients)
 
 
@@ -243,14 +243,14 @@ def _system(
 
 
 def _unsure(samples: SlipSamples, posterior: SlipPosterior, curve: Laplace) -> tuple[Array, float]:
-    """Compute in what directions the prediction is unsure, by a standard deviation of each, (n, d).
+    """Compute by how much the curve's uncertainty moves predicted forces, as d columns, (n, d) [N].
 
-    Without these, the load cell's errors on a bump would pass for run-out. Returned is also the
-    relative standard deviation of the slope.
+    They are the derivatives by coordinates times the Cholesky factor of the curve's covariance.
+    Without them load cell errors would pass for run-out. Also: relative sd of the slope [-].
     """
     moved = curve.mode + np.vstack([np.zeros(len(curve.mode)), _STEP * np.eye(len(curve.mode))])
     each = [raw_residuals(samples, posterior.law, v) for v in posterior.values(moved)]
-    residual, slope = (np.nan_to_num(np.array(of)) for of in zip(*each, strict=True))
+    residual, slope = (np.nan_to_num(np.array(of)) for of in zip(*each, strict=True))  # NaN: 0
     factor = np.linalg.cholesky(curve.covariance)
     steeper = (slope[1:] @ slope[0] / (slope[0] @ slope[0]) - 1) / _STEP
     return (residual[0] - residual[1:]).T / _STEP @ factor, float(np.linalg.norm(steeper @ factor))
@@ -258,10 +258,10 @@ def _unsure(samples: SlipSamples, posterior: SlipPosterior, curve: Laplace) -> t
 
 @dataclass(frozen=True)
 class _Solution:
-    mean: Array
-    sd: Array
-    gain: float
-    standard_error: float
+    mean: Array  # of the coefficients, shape (m,) [m]
+    sd: Array  # shape (m,) [m]
+    gain: float  # as of `RunOut`
+    standard_error: float  # of the gain
 
 
 def _solved(system: _System, before: Array, prior_sd: float) -> _Solution:

@@ -101,11 +101,14 @@ class PriorCorrelation:
 
     @cached_property
     def _eigen(self) -> tuple[Array, Array]:
+        """Eigenvalues of R, at least `_LEAST`, shape (m,), and eigenvectors in columns, (m, m)."""
         values, vectors = np.linalg.eigh(self.matrix)
         return np.maximum(values, _LEAST), vectors
 
     def root(self, order: Collection[str], *, inverse: bool = False) -> Array:
-        """Return R^(1/2), or its inverse, for parameters in an order, others independent, (d, d).
+        """Return R^(1/2), or its inverse, for all parameters in a given order, shape (d, d).
+
+        It is the identity for parameters that are not in the correlation.
 
         Args:
             order: Names of all d free parameters; those of the correlation are among them.

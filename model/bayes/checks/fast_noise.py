@@ -82,7 +82,10 @@ def _moved(
     choice: BlockChoice,
     share: float,
 ) -> Array:
-    """Compute how far coordinates move with another share of wander, shape (d,), to first order."""
+    """Compute how far the fit's coordinates move if another share of wander is taken, (d,).
+
+    To first order: by the change of the predicted forces of blocks that are made with it.
+    """
     if share == choice.wander_share:
         return np.zeros(len(fit.z))
     blocks = block_means(samples, choice.length, wander_share=share)
@@ -91,6 +94,7 @@ def _moved(
 
 
 def _untested(found: FastWander | None, used: float, extremes: str) -> Check:
+    """Return the check where the force does not tell the share of wander well enough."""
     seen = "nothing" if found is None else f"{found.share:.0%} ± {found.sd:.0%}"
     why = (
         f"slip fluctuates from sample to sample, by noise of the speeds or by wander faster than "
@@ -106,6 +110,10 @@ def _untested(found: FastWander | None, used: float, extremes: str) -> Check:
 
 
 def _told(found: FastWander, used: float, extremes: str) -> Check:
+    """Check that the share of wander used is within `OTHER_SHARE` standard deviations of that told.
+
+    The estimate is clipped to 0 to 1; its standard deviation counts as 0.02 at least.
+    """
     seen = f"{found.share:.0%} ± {found.sd:.0%}"
     evidence = (
         f"by its correlation in time the fast part of slip is noise; traction follows {seen} of "

@@ -30,7 +30,7 @@ MEMORIES = 6.0  # correlation times of the noise that a run holds
 FEWEST_SAMPLES = 8  # of a run, that a noise can show in
 DELAY_SPANS = (1, 2, 4, 8, 16)  # samples over which slip is seen to change
 DELAY_P = 2e-4  # of each of five spans: one sound set in 1,000 fails
-FAR_PRIOR = 4.0  # standard deviations of a prior
+FAR_PRIOR = 4.0  # standard deviations of a prior, beyond which a value is implausible
 NOISE = {
     "slip_error_scale", "slip_scatter", "noise_floor", "noise_slope", "noise_correlation",
     "offset_spread",
@@ -69,10 +69,12 @@ def faults(
 
 
 def _failed(check: Check, cause: str) -> Check:
+    """Return the check with what it found to be wrong, if it failed."""
     return replace(check, cause=cause) if check.failed else check
 
 
 def _sign(samples: SlipSamples) -> Check:
+    """Check that no run's traction opposes its slip, by `opposed_runs`."""
     opposed = np.flatnonzero(opposed_runs(samples))
     names = tuple(samples.run_names[i] for i in opposed)
     cause = f"traction opposes the slip in {_counted(names)} (wrong sign, or exchanged speeds)"
@@ -86,13 +88,14 @@ def _sign(samples: SlipSamples) -> Check:
 
 
 def _counted(names: tuple[str, ...]) -> str:
+    """Format the number of runs as text."""
     return f"{len(names)} run{'s' * (len(names) != 1)}"
 
 
 def _outliers(
     samples: SlipSamples, posterior: SlipPosterior, values: Array, residual: Array
 ) -> Check:
-    """Check that no samples leap so far that the fit suffers."""
+    """Check that there are no more `outliers` than chance, or a single fault, makes."""
     found = outliers(samples, residual, reach_of_slip_noise(samples, posterior.law, values))
     cause = f"outliers: {found.count} samples leap by about {found.size:.3g} N"
     advice: Advice = CorrectData(
@@ -112,6 +115,7 @@ def _outliers(
 
 
 def _clipped(samples: SlipSamples) -> Check:
+    """Check that neither traction nor normal force is `clipped` at a limit."""
     name = "no force stops at a limit"
     both = (clipped(samples.traction_force), clipped(samples.normal_force))
     for what, found in zip(("traction", "normal force"), both, strict=True):
@@ -126,6 +130,10 @@ def _clipped(samples: SlipSamples) -> Check:
 
 
 def _delay(samples: SlipSamples, residual: Array, slope: Array) -> Check:
+    """Check that traction is not late: no delay over any of `DELAY_SPANS` has a p below `DELAY_P`.
+
+    `residual` and `slope` are those of the samples by `raw_residuals`, shape (n,) [N].
+    """
     name = "traction follows slip at once"
     tries = (delay(samples, residual, slope, span=span) for span in DELAY_SPANS)
     found = max(tries, key=lambda each: -each.p)
@@ -145,6 +153,7 @@ def _delay(samples: SlipSamples, residual: Array, slope: Array) -> Check:
 
 
 def _swing(fit: Linearised, samples: SlipSamples) -> list[Check]:
+    """Check that residuals do not swing with a period, by `find_swing`; none for short runs."""
     found = find_swing(fit, block_times(fit, samples))
     if found is None:
         return []
@@ -181,6 +190,7 @@ def _long_enough(samples: SlipSamples, correlation: float | None) -> list[Check]
 
 
 def _friction(fit: Linearised, explained: Array) -> list[Check]:
+    """Check that runs do not scatter in friction, by `friction_scatter`; none with too few runs."""
     found = friction_scatter(fit, explained)
     if found is None:
         return []
@@ -202,7 +212,10 @@ def _friction(fit: Linearised, explained: Array) -> list[Check]:
 
 
 def _priors(posterior: SlipPosterior, fit: Linearised) -> Check:
-    """Check that the values lie where their priors expect them, noise and offsets apart."""
+    """Check that each free parameter lies within `FAR_PRIOR` standard deviations of its prior.
+
+    The distance is its coordinate in `fit.z`. Parameters of `NOISE` are not checked.
+    """
     free = [p.name for p in posterior.free]
     far = {
         name: float(z)

@@ -62,6 +62,7 @@ def offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> Ch
 
 
 def _one_run(name: str, why: str) -> Check:
+    """Return a check that cannot be made because there is one run."""
     advice = MeasureAlso("one run does not show what repeats", repeats=PASSES)
     return not_testable(name, why, untested="repeatability (one run)", advice=advice)
 
@@ -103,11 +104,11 @@ def _run_advice(residuals: Residuals, far: list[str]) -> Advice:
 
 
 def whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
-    """Check that whitened residuals of successive blocks are hardly correlated.
+    """Check that the lag-1 autocorrelation of whitened residuals is below `lag_one_limit`.
 
-    The limit is `MAX_LAG_ONE`, or more for few blocks; not testable with fewer than `FEWEST_PAIRS`
-    pairs of successive blocks, nor where runs have fewer than `FEWEST_IN_RUN`: noise that changes
-    slowly and the offset of a run are not told apart there.
+    Not testable with fewer than `FEWEST_PAIRS` pairs of successive blocks in the same run, nor
+    where the median run has fewer than `FEWEST_IN_RUN` blocks: noise that changes slowly and the
+    offset of a run are not told apart there.
     """
     name = "residuals are white"
     pairs, in_run = len(blocks) - blocks.n_runs, float(np.median(np.diff(blocks.run_starts())))
@@ -146,9 +147,10 @@ def law_advice(blocks: SlipBlocks) -> TryLaws:
 
 
 def lag_one_limit(pairs: int) -> float:
-    """Return the largest lag-1 correlation of a good fit: `MAX_LAG_ONE`, or more for few pairs [-].
+    """Return the largest lag-1 correlation of a good fit [-].
 
-    White noise exceeds it once in 100.
+    It is 2.6 over the root of the number of pairs, which white noise exceeds once in 100, but no
+    less than `MAX_LAG_ONE`, which binds from 2,704 pairs on.
     """
     return float(max(MAX_LAG_ONE, 2.6 / np.sqrt(pairs)))
 

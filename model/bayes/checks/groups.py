@@ -95,7 +95,10 @@ def _unwhitened(fit: Linearised, weights: Array) -> Array:
 
 
 def _chi_square(score: Array, correlation: Array) -> tuple[float, int]:
-    """Compute the chi-square of correlated scores, in the directions that have a variance."""
+    """Compute the chi-square of correlated scores, and its degrees of freedom.
+
+    Eigen-directions of the correlation with a variance up to 0.001 are left out.
+    """
     size, vectors = np.linalg.eigh(correlation)
     kept = size > 1e-3
     return float(np.sum((vectors.T @ score)[kept] ** 2 / size[kept])), int(kept.sum())

@@ -86,11 +86,16 @@ def inspect(
 
 
 def _runs(n: int) -> str:
+    """Format a number of runs as text."""
     return {1: "one run", 2: "two runs"}.get(n, f"{n} runs")
 
 
 def _is_two_sided(posterior: SlipPosterior, fit: Linearised) -> bool:
-    """Return whether slips of both signs reach far enough to show where force crosses zero."""
+    """Return whether slips of both signs reach far enough to show where force crosses zero.
+
+    The smaller side must reach `SMALLER_SIDE` of the larger side's slip, or `PEAK_SHARE` of the
+    least peak slip if that is less.
+    """
     slip = fit.blocks.slip
     k = len(posterior.law.parameters)
     smaller, larger = sorted((slip.max(), -slip.min()))
@@ -103,8 +108,9 @@ def _family(name: str, found: list[Found], untested: str) -> Check:
 
     Args:
         name: Claim that is checked.
-        found: Its terms, the one that explains most first.
-        untested: What these data cannot test of it, and why; empty where they can.
+        found: Terms of the family, the one that explains most first.
+        untested: What these data cannot test of it, with the reason in brackets; empty where they
+            can.
     """
     worst = min(found, key=lambda each: each.term.p)
     evidence = (

@@ -73,7 +73,11 @@ def find_swing(fit: Linearised, time: Array) -> Swing | None:
 
 
 def _most(fit: Linearised, since: Array, frequency: Array, long: NDArray[np.bool_]) -> Swing:
-    """Return the swing of the largest chi-square over frequencies, shape (m,)."""
+    """Return the swing of the frequency, of shape (m,), that explains most of the residuals.
+
+    The chi-square is divided by the median one over its degrees of freedom, if that is above 1. The
+    p-value is multiplied by the number of frequencies and by 2, as two discs are tried.
+    """
     blocks = fit.blocks
     white = whiten(blocks, fit.residual[:, None], fit.factors)[:, 0]
     white = white / np.sqrt(np.mean(white**2))

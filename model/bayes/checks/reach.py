@@ -71,12 +71,16 @@ def peak(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Check:
 
 
 def slips_beyond(reason: str, blocks: SlipBlocks, peaks: Array) -> Advice:
-    """Advise slips from the peak to four times its slip, at every load level.
+    """Advise to measure slips beyond the peak, at every load level; see `beyond_the_peak`.
+
+    They go from the smallest peak's slip to four times the largest, have the sign of the side on
+    which tested slips are larger, and are clipped to what a rig can hold.
 
     Args:
         reason: What the data lack.
         blocks: The block means.
-        peaks: Slip of the peak at each load level, or one for all [-].
+        peaks: Slip of the peak at each load level, shape (m,), or one for all; one beyond the
+            largest tested slip counts as that [-].
     """
     return measure_slips(
         reason, loads=load_levels(blocks), definition=blocks.definition,

@@ -71,6 +71,7 @@ def _within(fit: Linearised) -> Array:
 
 
 def _log_load(fit: Linearised) -> Array:
+    """Return the logarithm of each block's load over the median load, shape (n,) [-]."""
     load = np.maximum(fit.blocks.normal_force, 1e-9)
     return np.log(load / np.median(load))
 
@@ -81,6 +82,7 @@ def _definition_change(fit: Linearised) -> Array:
 
 
 def _radius_advice(found: str, size: float) -> Advice:
+    """Advise to correct the ratio of the radii by its relative error `size`."""
     return CorrectData(
         found,
         f"measure the radii of both discs under load; if they confirm it, multiply radius_ground "
@@ -112,10 +114,12 @@ _MEASURE_AGAIN = _correct(
 
 
 def _zero_often(found: str, _: float) -> Advice:
+    """Advise to zero the load cell before each run, whatever the size of the term."""
     return ZeroBeforeEach(found)
 
 
 def _try_definition(found: str, _: float) -> Advice:
+    """Advise to try another slip definition, whatever the size of the term."""
     return TryDefinition(found)
 
 

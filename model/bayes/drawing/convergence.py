@@ -117,6 +117,7 @@ class Convergence:
 
 
 def _unreliable(pareto_k: float | None) -> str:
+    """Format as text that the tail index of the weights is too large."""
     return f"tail index of the weights (Pareto k) is {pareto_k:.2f}, below {MAX_PARETO_K:g} needed"
 
 
@@ -163,7 +164,7 @@ def assess_weighted(draws: Array, weighted: Array, weights: Array, pareto_k: flo
     return Convergence(
         burn_in=0,
         length=draws.shape[1],
-        autocorrelation_time=np.ones(draws.shape[-1]),
+        autocorrelation_time=np.ones(draws.shape[-1]),  # independent but for repeated draws
         r_hat=_r_hat(draws),
         ess_bulk=bulk,
         ess_tail=np.minimum(*tails),
@@ -173,7 +174,15 @@ def assess_weighted(draws: Array, weighted: Array, weights: Array, pareto_k: flo
 
 
 def _effective_size(h: Array, weights: Array) -> Array:
-    """Compute the effective size of the weighted mean of h, (w, d), for each column, (d,)."""
+    """Compute the effective sample size (ESS) of the weighted mean of each column of h, (d,).
+
+    It is the weighted variance of h over the Monte Carlo variance of its mean, the sum of
+    w² (h - E h)²; NaN for a column that is constant.
+
+    Args:
+        h: A quantity of each draw, shape (w, d).
+        weights: Weights with sum one, shape (w,).
+    """
     away = (h - weights @ h) ** 2
     return weights @ away / (weights**2 @ away)
 

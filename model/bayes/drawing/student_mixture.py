@@ -33,6 +33,7 @@ class StudentMixture:
 
     @cached_property
     def _distributions(self) -> list[Any]:
+        """Each part as scipy's `multivariate_t`."""
         from scipy.stats import multivariate_t  # late: takes longest of all to import
 
         frozen: Any = multivariate_t  # scipy's stub has the covariance as an int

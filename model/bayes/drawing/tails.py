@@ -46,18 +46,22 @@ def approximate(log_density: LogDensity, starts: Array) -> LaplaceMixture:
 
 
 def find_tails(log_density: LogDensity, mode: Laplace) -> tuple[Laplace, ...]:
-    """Find the directions in which a density falls less or elsewhere than the Gaussian at its mode.
+    """Find heavy tails of a density: directions in which it falls less than the Gaussian there.
 
-    Each coordinate is moved outward to both sides in turn, and the others follow to about where
-    the density is highest.
+    From the mode each coordinate is moved outward to both sides, by strides of `STRIDE` standard
+    deviations, and the others follow to about where the density is highest. A direction is a heavy
+    tail if after `FIRST` strides the log density has fallen by less than the Gaussian's, with a
+    difference above `HEAVY`. Only in these the walk goes on, until the log density has fallen by
+    more than `FALLEN` or the coordinate is beyond `EDGE`.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
         mode: The Laplace approximation at the mode.
 
     Returns:
-        A Gaussian in each heavy tail, where the log density has fallen by `FALLEN` or more, with
-        the covariance there; of those within a standard deviation of each other, the first.
+        A Gaussian where the walk in each heavy tail ended, with the covariance there; none where
+        the log density has fallen by `LOST` or more. Of those within a standard deviation of each
+        other, the first.
     """
     d = len(mode.mode)
     index = np.repeat(np.arange(d), 2)

@@ -190,9 +190,11 @@ def _weighted(z: Array, log_density: Array, log_proposal: Array) -> WeightedDraw
 
 
 def _accepted(log_ratio: Array, weights: Array) -> float:
-    """Estimate the share of accepted jumps from some draws with their log ratios and weights.
+    """Estimate the share of accepted Metropolis-Hastings jumps to draws of the proposal [-].
 
-    A jump from i to j is accepted with the probability min(1, r_j / r_i).
+    A jump from i to j is accepted with the probability min(1, r_j / r_i), r being the ratio of
+    posterior and proposal density. It is averaged over pairs of the first `ENOUGH_PAIRS` draws: i
+    by weight, as draws of the posterior, j evenly.
     """
     ratio, weight = log_ratio[:ENOUGH_PAIRS], weights[:ENOUGH_PAIRS]
     from_, to = np.where(weight > 0, ratio, np.inf)[:, None], ratio[None, :]

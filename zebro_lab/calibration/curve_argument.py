@@ -73,7 +73,7 @@ class GivenCurve:
         return force
 
     def said(self, definition: SlipDefinition) -> tuple[str, ...]:
-        """Return notes on the slip definition, beside that of the calibration."""
+        """Return a note that slip is converted, if a calibration has another definition."""
         if self.definition in (None, definition):
             return ()
         return (f"{self.text}: its '{self.definition}' slip is converted to '{definition}'",)

@@ -35,7 +35,7 @@ SWEEP = "sweep"
 
 
 def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]:
-    """Number the sweeps of a recorded run: stretches without jumps of slip, leg disc turning.
+    """Number the sweeps of a recorded run: the leg disc turns, and slip does not jump within one.
 
     Returns:
         Sweep number of each sample, from 1; 0 outside sweeps, shape (n,). Then a note with the

@@ -116,7 +116,7 @@ def _print_blocks(console: Console, calibration: Calibration) -> None:
 
 
 def _noise_lines(calibration: Calibration) -> list[str]:
-    """Say which share of slip's noise is taken for wander, if any."""
+    """Say which share of the fast part of slip is true change of slip (wander), if any."""
     wander = calibration.fit.block_choice.wander
     if wander is None or wander.used == 0:
         return []

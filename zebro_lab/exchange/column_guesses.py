@@ -74,7 +74,7 @@ class ColumnGuess:
 
 
 def guess_kind(table: RawTable) -> str:
-    """Return the kind of a table, one of `KINDS`, where its headers leave no doubt.
+    """Return the kind of a table: the only one of `KINDS` whose columns its headers suffice for.
 
     Raises:
         SettingsError: They fit no kind or several.
@@ -286,7 +286,7 @@ def _guess(
 
 
 def _nanoseconds(table: RawTable, name: str) -> str | None:
-    """Return the header of the nanoseconds beside a ROS stamp's seconds; None without one."""
+    """Return the header of nanoseconds, `X_nanosec`, beside seconds `X_sec`; None without one."""
     match = re.fullmatch(r"(.*)secs?", name)
     for ending in ("nanosec", "nsec", "nsecs", "nanosecs") if match else ():
         if match and match[1] + ending in table.columns:

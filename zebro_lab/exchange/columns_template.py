@@ -170,4 +170,5 @@ def _summary(table: RawTable, name: str) -> str:
 
 
 def _quoted(text: str) -> str:
+    """Return a text as a TOML string, with quotes and escapes."""
     return tomlkit.string(text).as_string()

@@ -78,7 +78,7 @@ def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
     walk, notes = _walk(request)
     folder = write_imported_walk(request.data, walk)
     files = ((LEGS, request.legs), (IMU, request.imu), (TRACK, request.track))
-    above = [  # a columns.toml that somebody may have forgotten in a folder above
+    above = [  # notes on columns or a source that a columns.toml in a folder above states
         line for kind, file in files if file is not None
         for line in columns_above(kind, file, request.columns)
     ]  # fmt: skip

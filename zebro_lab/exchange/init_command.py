@@ -66,7 +66,7 @@ def init(
 
 
 def _to_check(written: "WrittenColumns") -> list[str]:
-    """Return advice on what a header does not show."""
+    """Return advice on what to check in the written `columns.toml`, as headers do not show it."""
     advice = ["the names, units and signs above; comments in columns.toml explain them"]
     if not written.guesses:
         advice = ["no column was recognised; map each by hand in columns.toml, which lists all "

@@ -67,7 +67,10 @@ def guess_unit(table: RawTable, name: str, si_unit: str, *, si: bool) -> UnitGue
 
 
 def _date_unit(table: RawTable, name: str) -> UnitGuess | None:
-    """Return the unit of a column of dates or times of day; None for other columns."""
+    """Return the unit of a column of dates or times of day by its first cell; else None.
+
+    A time of day is "h:m:s", a date with a time zone "date", one without "date UTC", in doubt.
+    """
     cells = table.columns[name].dropna()
     if not len(cells) or cells.dtype.kind in "if":
         return None
@@ -86,8 +89,9 @@ def _date_unit(table: RawTable, name: str) -> UnitGuess | None:
 def _by_numbers(table: RawTable, name: str, si_unit: str) -> str:
     """Guess the unit of a column for which the file states none, from header and largest number.
 
-    A header with rpm or Drehzahl means rpm, times of 1e11 and more count ms, us or ns since 1970, a
-    ratio above `_RATIO` is in percent, an angle above `_RADIANS` in degrees; all else is SI.
+    An angular speed is in rpm if the header has rpm or Drehzahl, a time in ms or us if the header
+    is in `_CLOCKS`. Times of 1e11 and more count ms, us or ns since 1970; a ratio above `_RATIO` is
+    in percent, an angle above `_RADIANS` in degrees. All else is in SI.
     """
     plain = plain_name(name)
     if si_unit == "rad/s":

@@ -110,7 +110,7 @@ def lost_output(file: Path) -> tuple[str, ...]:
 
 
 def result_kind(folder: Path) -> str | None:
-    """Return the kind of result that a folder holds; None without a readable manifest of ours."""
+    """Return the kind of result that a folder holds; None without a manifest that tells it."""
     try:
         content = read_json_object(folder / MANIFEST, of="result folder")
     except ZebroLabError:

@@ -158,7 +158,7 @@ def parsing(
 ) -> Iterator[None]:
     """Convert any exception of the body into a one-line error that names the file.
 
-    Every `Exception` that a third-party parser may raise; a `ZebroLabError` passes unchanged.
+    Third-party parsers may raise any `Exception`. A `ZebroLabError` passes unchanged.
 
     Args:
         path: The file.

@@ -100,7 +100,10 @@ def commit_of(checkout: Path) -> str:
 
 
 def _git_status(checkout: Path) -> subprocess.CompletedProcess[str]:
-    """Ask git for commit and changed files; without writing, and whatever repository calls us."""
+    """Ask git for the commit and the changed files of the packages, without writing anything.
+
+    Variables of git's environment are left out: within a hook they name the repository of the hook.
+    """
     outside = {key: value for key, value in os.environ.items() if not key.startswith("GIT_")}
     asked = ("--no-optional-locks", "status", "--porcelain=v2", "--branch", "--", *PACKAGES)
     return subprocess.run(  # noqa: S603 - no shell, and no argument comes from outside

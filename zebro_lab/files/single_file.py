@@ -35,7 +35,7 @@ class SingleFile:
 
 
 def picture(command: str) -> SingleFile:
-    """Return the kind of a picture by `command`, recognised by its `picture_metadata`."""
+    """Return the kind of a picture that a command draws, recognised by `picture_metadata`."""
     drawn = f"{_DRAWN_BY}{command}"
     content = f"{COMMENT}\0{command}".encode("latin-1")
     png = len(content).to_bytes(4, "big") + b"tEXt" + content

@@ -118,7 +118,7 @@ def may_be_gradian(unit: str) -> bool:
 
 
 def is_unit_text(text: str) -> bool:
-    """Return whether a text is written as units in headers are; nothing is looked up.
+    """Return whether a text is written as units in headers are, whether pint knows it or not.
 
     >>> [is_unit_text(text) for text in ("m/s²", "deg C", "-", "kappa", "FZ")]
     [True, True, True, False, False]

@@ -50,7 +50,7 @@ class TopicRows:
 
 
 def whole(message: LoggedMessage) -> Parts:
-    """Return a message as one part: its topic, header and content."""
+    """Yield a message as one part: its topic, header and content."""
     yield message.topic, message.content.header, message.content
 
 
@@ -75,7 +75,7 @@ def read_topic(
 
     Raises:
         NotFound: The log does not exist, or the package that reads it.
-        SeveralTopics: It has several topics, and none is asked for.
+        SeveralTopics: Several topics fit: of `topics`, or of all if the log has none of these.
         DataError: It cannot be read, or has no such message, or not the topic that is asked for.
     """
     messages, damage = read_messages(path, types)

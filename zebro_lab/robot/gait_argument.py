@@ -110,7 +110,8 @@ def _tripod(request: GaitRequest, leg_arc: float) -> NamedGait:
 def _tripod_name(angles: TripodAngles, side: Direction) -> str:
     """Return the name of a tripod with its steering factor and side, or "tripod, straight".
 
-    It is straight if the factor is 1 to 5e-4, and all legs touch down at one angle to 1e-3 rad.
+    It is straight if the factor is within 5e-4 of 1, and inner and outer legs touch down at angles
+    within 1e-3 rad.
     """
     factor = angles.steering_factor
     if np.isclose(factor, 1.0, atol=5e-4) and np.isclose(
@@ -144,7 +145,15 @@ def _groups(request: GaitRequest, _: float) -> NamedGait:
 def _scheduled(
     request: GaitRequest, gait: Gait, name: str, stance: tuple[float, float], **defaults: float
 ) -> NamedGait:
-    """Schedule a gait of any groups; `defaults` are for `_turn_times`, angles in radians."""
+    """Schedule a gait of any groups of legs by max-plus algebra.
+
+    Args:
+        request: Times that were given.
+        gait: The groups of legs.
+        name: Name of the gait, for titles.
+        stance: Touchdown and lift-off angle [rad].
+        defaults: Stance and flight time for `_turn_times`, if they are not given [s].
+    """
     times, inner = _turn_times(request, **defaults), inner_legs(request.side)
     touchdown, liftoff = stance
     waits = _or(request.tau_double, 0.0)

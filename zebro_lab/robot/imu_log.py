@@ -96,7 +96,7 @@ def _not_read(table: RawTable, mapping: Columns, *, has_yaw: bool) -> Iterator[s
 
 
 def _orientation(table: RawTable, mapping: Columns) -> tuple[Array, bool]:
-    """Return quaternions, shape (n, 4), and whether the table has a yaw; 0 is taken without."""
+    """Return quaternions, shape (n, 4), and whether the table has a yaw, which else is 0."""
     if mapping.has(table, "qw"):
         columns = [_numbers(table, mapping, name) for name in _QUATERNION]
         quaternion = np.column_stack(columns)
@@ -169,7 +169,7 @@ def require_unit_quaternions(table: RawTable, mapping: Columns, quaternion: Arra
     Raises:
         DataError: The length of one differs by more than `_NORM_TOLERANCE`.
     """
-    norm = np.linalg.norm(np.clip(quaternion, -1e3, 1e3), axis=1)  # damage may be huge
+    norm = np.linalg.norm(np.clip(quaternion, -1e3, 1e3), axis=1)  # squares of damage overflow
     good = np.abs(norm - 1) <= _NORM_TOLERANCE
     problem = "the quaternion has length {}; expected 1 within {}: is the order of columns right?"
     table.require(

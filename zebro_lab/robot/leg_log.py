@@ -79,7 +79,7 @@ def _why_not(t: Array, theta: Array, at: int, gaps: NDArray[np.intp]) -> str | N
     length = t[at + 1] - t[at]
     if length > LONGEST_BRIDGED:
         return f"that is {length:.3g} s"
-    first = np.searchsorted(t, t[at] - _BESIDE - 1e-9)
+    first = np.searchsorted(t, t[at] - _BESIDE - 1e-9)  # rounding must not leave out a sample
     last = np.searchsorted(t, t[at + 1] + _BESIDE + 1e-9) - 1
     if at - first < _FEWEST - 1 or last - at - 1 < _FEWEST - 1:
         return "too few samples beside it tell the legs' speeds"

@@ -28,9 +28,10 @@ def leg_warnings(
     leg_offset: Array | None = None,
     columns: Path | None = None,
 ) -> tuple[str, ...]:
-    """Return what is suspected of leg angles, a line for each fault, and a note of turning back.
+    """Return a warning of each fault that leg angles seem to have, or a note on turning back.
 
     Each line says what was seen, what was expected, and the change that would make it consistent.
+    Nothing is returned if the legs turn too little to tell.
 
     Args:
         log: Leg angles over time, as in the log.

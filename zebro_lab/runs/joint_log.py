@@ -156,6 +156,8 @@ def read_joint_log(
 ) -> JointLog:
     """Read the joint states of a ROS log as a table, up to the first damage.
 
+    Topics that together hold the six legs, each on one topic, are read as one if none is chosen.
+
     Args:
         path: The log: MCAP or a bag.
         topic: Topic to read; None for one of `topics`, else the only one with joint positions.

@@ -46,7 +46,7 @@ class SlipRigTable:
         return np.column_stack([getattr(self, name) for name in COLUMNS])
 
     def measured(self) -> dict[str, Array]:
-        """Return all that was measured, by its name."""
+        """Return the columns that are not None, by name."""
         every = {each.name: getattr(self, each.name) for each in fields(self)}
         return {name: values for name, values in every.items() if values is not None}
 

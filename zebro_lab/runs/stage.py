@@ -61,7 +61,7 @@ def _listed(folder: Path) -> ListedRun:
 
 
 def _with_exclusions(state: str, manifest: RunManifest) -> str:
-    """Replace the state of an excluded run by its reasons; append past reasons to another's."""
+    """Replace the state of an excluded run by its reasons; append past ones to other states."""
     before = "; ".join(past_reasons(manifest))
     if manifest.excluded is None:
         return f"{state} (was excluded: {before})" if before else state

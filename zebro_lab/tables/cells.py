@@ -56,7 +56,9 @@ def may_be_thousands(cell: str) -> bool:
 
 
 def decimal_sign(cells: Sequence[str]) -> str | None:
-    """Return the decimal sign of numbers; None where none or both are used, or it may be grouping.
+    """Return the decimal sign of numbers, "," or "."; None where none or both are used.
+
+    Numbers in which it may separate thousands, such as 1,234, do not count.
 
     >>> decimal_sign(["1", "0,5"]), decimal_sign(["1,234"]), decimal_sign(["0,5", "0.5"])
     (',', None, None)

@@ -115,7 +115,7 @@ class MappedColumn:
     def in_si(self, table: RawTable) -> Array:
         """Return the column's numbers in SI with the canonical sign, shape (n,); NaN where empty.
 
-        The unit that the file states is taken into account by `in_unit_of`.
+        A unit that the file states counts only if `in_unit_of` has set it before.
 
         Args:
             table: The table that the column is read from.

@@ -215,7 +215,7 @@ def _scale(table: SettingsTable, unit: str) -> float:
 
 
 def _sign(table: SettingsTable) -> int:
-    """Read a sign: a number, or a text as where a question mark was deleted."""
+    """Read a sign: a number or a text; a guess such as "-1?" leaves a text when "?" is deleted."""
     if "sign" not in table:
         return 1
     found = table.value("sign")

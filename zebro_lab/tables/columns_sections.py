@@ -146,7 +146,7 @@ def _stated_source(kind: str, file: Path, document: Mapping[str, Any]) -> tuple[
 
 
 def _documents(folder: Path) -> Iterator[tuple[Path, dict[str, Any], bool]]:
-    """Yield each `columns.toml` in a folder and above, its content, and whether it is in it."""
+    """Yield each `columns.toml` in a folder or above it, its content, and whether it is in it."""
     for each in (folder, *_above(folder)):
         if (file := each / COLUMNS_FILE).is_file():
             advice = f"expected a {COLUMNS_FILE}"
@@ -224,10 +224,10 @@ def is_for(kind: str, document: Mapping[str, Any], *, beside: bool) -> bool:
 
 
 def _gives_source(kind: str, document: Mapping[str, Any]) -> bool:
-    """Return whether a `columns.toml` that does not map a kind states its source nevertheless.
+    """Return whether the source in a `columns.toml` holds for a kind of table that it does not map.
 
-    A file without sections is for legs or a rig, and gives its source to none of these two unless
-    it maps it.
+    It does for IMUs and tracks; for legs and rigs only if the file has sections, since without them
+    it is for one of these two.
     """
     return kind not in PLAIN or is_sectioned(document)
 

@@ -88,7 +88,11 @@ def _encoding(path: Path, data: bytes) -> str:
 
 
 def _head(path: Path, head: bytes, encoding: str) -> list[Line]:
-    """Return the first lines that are not blank."""
+    """Return number and text of the first lines that are not blank, at most `_HEAD_LINES`.
+
+    A cell with line breaks is joined to one line. Raises `DataError` for a first line beyond
+    `_HEAD_BYTES`, and for JSON, HTML and XML.
+    """
     lines = re.split(r"\r\n|\n|\r", decoded(head, encoding))
     if len(head) == _HEAD_BYTES and len(lines) == 1:
         raise DataError(
@@ -195,7 +199,10 @@ def _table(path: Path, layout: TextLayout, frame: pd.DataFrame, encoding: str) -
 def _without_empty_ends(
     path: Path, frame: pd.DataFrame, layout: TextLayout
 ) -> Mapping[str, pd.Series]:
-    """Return the columns without empty rows at the end, and without an empty one at the right."""
+    """Return the columns without empty rows at the end, and without an empty one at the right.
+
+    The latter has no header, as after a final separator; if it has a cell, `DataError` is raised.
+    """
     last = str(frame.columns[-1]) if len(frame.columns) else ""
     unnamed = last == f"column {len(frame.columns)}" and len(frame.columns) > 1
     if (last == _SURPLUS or unnamed) and bool(frame[last].isna().to_numpy().all()):
@@ -316,7 +323,12 @@ def _are_values(cells: pd.Series) -> bool:
 
 
 def _are_statistics(last: Sequence[str], above: pd.Series) -> bool:
-    """Return whether the last texts of a column are statistics, each once, and none above is."""
+    """Return whether the last texts all name statistics, each once, and none above does.
+
+    Args:
+        last: The last texts of a column.
+        above: The cells above them.
+    """
     return (
         len(set(last)) == len(last)
         and all(_FOOTER.fullmatch(text) and not _NO_STATISTIC.fullmatch(text) for text in last)

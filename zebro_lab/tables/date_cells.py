@@ -72,6 +72,7 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
         require(zoned | empty, f"has no time zone; state it in columns.toml: {advice}")
     else:
         require(~zoned, 'has a time zone of its own; state unit = "date" in columns.toml')
+    # to YYYY-MM-DD: day.month.year, named months, slashes, decimal commas, single digits
     texts = texts.str.replace(r"^(\d\d?)\.(\d\d?)\.(\d{4})", r"\3-\2-\1", regex=True)
     texts = texts.str.replace(_NAMED_MONTH, _numbered_month, regex=True)
     texts = texts.str.replace(r"^(\d{4})/(\d\d?)/(\d\d?)", r"\1-\2-\3", regex=True)
@@ -96,6 +97,7 @@ def _past_midnight(seconds: Array) -> Array:
 
 
 def _numbered_month(match: re.Match[str]) -> str:
+    """Return a date such as 4-Mar-2026 as 2026-03-04."""
     return f"{match[3]}-{_MONTHS.index(match[2]) + 1:02d}-{int(match[1]):02d}"
 
 

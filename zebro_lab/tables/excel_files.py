@@ -63,7 +63,7 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
 
 
 def _filled_sheet(path: Path, sheets: Mapping[str, Cells], wanted: str | None) -> tuple[str, Cells]:
-    """Return name and cells of the sheet that is wanted, or of the only one with cells."""
+    """Return name and cells of the sheet that is wanted, or else of the only one with cells."""
     if wanted is not None and wanted not in sheets:
         raise DataError(f"has no sheet '{wanted}'; it has {_listed(sheets)}", file=path)
     filled = {name: rows for name, rows in sheets.items() if rows and wanted in (None, name)}
@@ -188,4 +188,5 @@ def _require_bounded(path: Path, content: bytes) -> None:
 
 
 def _listed(names: Iterable[str]) -> str:
+    """Join names in quotes by commas."""
     return ", ".join(f"'{name}'" for name in names)

@@ -36,7 +36,7 @@ class Header:
 
 @dataclass(frozen=True)
 class DataRows:
-    """The longest stretch of rows with data.
+    """A stretch of rows with data.
 
     Attributes:
         first: Index of its first row.
@@ -83,6 +83,10 @@ def data_rows(rows: Sequence[Row]) -> DataRows | None:
 
 def find_header(rows: Sequence[Row], data: DataRows) -> Header:
     """Find names and units in the rows above the data.
+
+    Rows that `_is_full` and that stand directly above the data belong to the header. The lowest of
+    them that holds units is the row of units, unless it is the top one; the row above it, else the
+    lowest, holds the names. Units may also stand above the names.
 
     Raises:
         NoHeader: There is no row of names, or two may be.

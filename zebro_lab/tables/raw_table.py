@@ -246,6 +246,7 @@ class RawTable:
         return next((line for each, line, _ in self.text_rows() if each == row), None)
 
     def _not_a_number(self, name: str, index: int) -> DataError:
+        """Return, without raising, an error that a cell is no number, with advice by its form."""
         text = str(self.column(name).iloc[index])
         if index and self._is_line_of_words(index):
             return self.fault(

@@ -86,7 +86,9 @@ def run_title(table: RigTable, row: int, by: Sequence[str]) -> str:
 
 
 def run_names(titles: Sequence[str], label: str, rule: str) -> tuple[str, ...]:
-    """Return the name of each run of a table: its title, or its number where it has none.
+    """Return the name of each run of a table: its title, or its number if no run has a title.
+
+    A table that is one run has the label alone. Titles that repeat are numbered.
 
     Args:
         titles: Title of each run by `run_title`.
@@ -141,7 +143,10 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
 
 
 def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
-    """Mark each row whose time is more than `gap` [s] after the last known time before it."""
+    """Mark each row whose time is more than `gap` [s] after the last known time before it.
+
+    Raises `DataError` if there is no column of times.
+    """
     source = table.source_of("t")
     if source is None:
         problem = (

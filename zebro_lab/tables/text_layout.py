@@ -129,7 +129,7 @@ def split_line(line: str, separator: str) -> list[str]:
 
 
 def uneven_row(cells: int, names: int, advice: str) -> str:
-    """Return the problem of a row with another number of cells than the header has names."""
+    """Return the message that a row has another number of cells than the header has names."""
     return f"the row has {counted(cells, 'cell')}, the header has {names}; {advice}"
 
 
@@ -271,9 +271,10 @@ def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Lin
 
 
 def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> None:
-    """Raise if a row has more cells than the header, but for an empty one at its end.
+    """Raise `DataError` if a row has more cells than the header, but for an empty one at its end.
 
-    Or if a header such as `Time, s, Force, N` was split between names and units.
+    Also if there are twice as many names as columns, because names and units of a header such as
+    `Time, s, Force, N` were split from each other.
     """
     names = header.names
     units = [name.split(" (")[0] for name in names[1::2]]  # repeated ones are numbered
@@ -290,7 +291,11 @@ def _require_fit(best: _Candidate, header: Header, data: DataRows, body: Sequenc
 
 
 def _without_numbers(body: Sequence[Line]) -> TextLayout:
-    """Return the layout of a table of texts, or without rows: its first line is the header."""
+    """Return the layout of a table of texts, or without rows: its first line is the header.
+
+    The separator is the one that splits that line into most cells. Raises `DataError` if several
+    split it into as many, at least two.
+    """
     number, first = body[0]
     cells = {each: split_line(first, each) for each in SEPARATORS if each != BLANKS}
     width = max(map(len, cells.values()))

@@ -128,7 +128,7 @@ def _offer(error: Any, path: str, name: str, known: Collection[str]) -> None:
 
 
 def _named_value(message: str, found: Mapping[str, Any]) -> str:
-    """Return the message on a value that pydantic refuses, with the value."""
+    """Return a message with the value that pydantic rejects, and what is expected if known."""
     kind = str(found.get("type", "")).split("_")[0]
     if kind in _EXPECTED:
         return f"found '{found.get('input')}'; expected {_EXPECTED[kind]}"

@@ -59,6 +59,7 @@ class Output:
         from rich.console import Console
 
         aside = self.quiet or self.as_json
+        # Where the width is unknown, tables get one that they fit into.
         width = 120 if aside or not Console().is_terminal else None
         return Console(stderr=aside, quiet=self.quiet, highlight=False, width=width)
 

@@ -71,7 +71,8 @@ class ProgressBar:
             frame: Interrupted stack frame; unused.
 
         Raises:
-            StoppedBySignal: The step has not called `stop_requested`, or a stop was requested.
+            StoppedBySignal: The step has not called `stop_requested`, or a stop is requested
+                already.
         """
         if self._stop is not None or not self._is_heard:
             stop_at_once(number, frame)
@@ -130,7 +131,7 @@ class _Silence:
 
 
 class _TimesColumn(ProgressColumn):
-    """Times of a step: elapsed, and left by the same clock."""
+    """Column of a progress bar: elapsed and remaining time of a step."""
 
     def render(self, task: Task) -> Text:
         """Return elapsed and remaining time of a task as text."""
@@ -139,7 +140,7 @@ class _TimesColumn(ProgressColumn):
 
 
 def shown_times(elapsed: float, fraction: float | None) -> str:
-    """Describe the time of a step that is past and, at the same pace, left.
+    """Describe the elapsed time of a step and, at the same pace, the remaining time.
 
     Args:
         elapsed: Time since the step began [s].

@@ -87,7 +87,7 @@ A command in a group has the group's name before it ("rig run"); `calibrate-slip
 
 
 def replacement(command: str, name: str) -> str | None:
-    """Return what to use instead of a command or option of an earlier version; None if never one.
+    """Return what to use instead of a command or option of an earlier version; else None.
 
     Args:
         command: Command that was typed, without the program's name, as `rig run`.

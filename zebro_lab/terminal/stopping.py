@@ -108,6 +108,6 @@ def _ask_again(number: int) -> None:
 
 
 def _end(number: int) -> None:
-    """End the process without cleaning up, since its exceptions were caught twice."""
+    """End the process at once, without cleaning up, where a stop by an exception has failed."""
     say_in_time(str(StoppedBySignal(number)), err=True)
     os._exit(STOPPED)

@@ -37,6 +37,8 @@ STANDARD = ("apriltag_41h12", "apriltag_52h13")
 MOST_WRONG_BITS = 1
 """Wrong bits up to which a tag is decoded; for two the tables of 52h13 take 6 GB of memory."""
 
+# Places of pupil-apriltags' corners in OpenCV's order: of a tag as OpenCV prints it, and as its
+# makers do
 _BY_OPENCV, _BY_MAKERS = [1, 0, 3, 2], [3, 2, 1, 0]
 
 
@@ -62,7 +64,7 @@ class TagFamily:
     Attributes:
         detector: Detector of pupil-apriltags for this family alone.
         codes: Code of each tag, shape (n,).
-        cells: Cells along a side of the border, which the detected corners are of.
+        cells: Cells along a side of the square whose corners are detected, that of the border.
         is_reversed: Whether the border is white on black.
         places: Row and column of each bit of a code, most significant first, from the border's
             first cell, shape (bits, 2).
@@ -106,6 +108,7 @@ def tag_family(dictionary: str) -> TagFamily | None:
         from pupil_apriltags import Detector
     except ImportError:
         return None  # an optional dependency: OpenCV's own detector works without it
+    # With a small family, replaced below: this constructor cannot limit the wrong bits.
     detector = Detector(families="tag16h5", nthreads=1, quad_decimate=1.0)
     # Its destructor frees families that the library still uses, which crashes the process.
     detector.tag_families = {}

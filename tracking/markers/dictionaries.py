@@ -23,6 +23,7 @@ DICTIONARIES = {
 """OpenCV's dictionaries: number of OpenCV's constant `DICT_...` by name, such as "4x4_50"."""
 
 _USUAL = ("4x4_50", "5x5_50", "6x6_250", "apriltag_36h11", "aruco_original", "7x7_50")
+"""Dictionaries that `guess_dictionary` tries."""
 
 
 @dataclass(frozen=True)
@@ -121,6 +122,7 @@ def _tag_name(key: str) -> str | None:
 
 
 def _dictionary_of_file(path: str) -> cv2.aruco.Dictionary:
+    """Read a custom dictionary from a file as OpenCV writes it; else raise `MarkerError`."""
     dictionary = cv2.aruco.Dictionary()
     with suppress(cv2.error, SystemError):  # raised by OpenCV for a malformed file
         storage = cv2.FileStorage(path, cv2.FILE_STORAGE_READ)

@@ -26,7 +26,6 @@ ACCEPTED_SCORE = 0.8
 LEAST_SCORE = 0.5
 """Least correlation to accept a marker that OpenCV decoded [-]."""
 
-
 _DARK_COUNTS = 128  # from black to white: fewer make a dark picture
 
 
@@ -107,12 +106,14 @@ def find_markers(
 
 
 def _grey(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return a picture as grey levels and contiguous in memory."""
     if pixels.ndim == 3:
         return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), dtype=np.uint8)
     return np.ascontiguousarray(pixels)
 
 
 def _detector(dictionary: str, *, patient: bool) -> cv2.aruco.ArucoDetector:
+    """Return OpenCV's detector; a `patient` one seeks fainter and more distorted outlines."""
     parameters = cv2.aruco.DetectorParameters()
     if patient:
         parameters.adaptiveThreshConstant = 3.0
@@ -127,6 +128,7 @@ def _detector(dictionary: str, *, patient: bool) -> cv2.aruco.ArucoDetector:
 def _with_opencv(
     grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int], several: bool
 ) -> list[Sighting]:
+    """Detect by OpenCV, what is missing by pupil-apriltags, then among OpenCV's rejected quads."""
     corners, ids, others = _detector(dictionary, patient=False).detectMarkers(grey)
     found = _fitted(grey, _decoded(corners, ids, numbers), dictionary, LEAST_SCORE)
     missing = _missing(numbers, found, several)
@@ -147,6 +149,7 @@ def _as_tags(
 def _as_enlarged_tags(
     grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
 ) -> list[Sighting]:
+    """Detect as `_as_tags` in a picture twice as large; refine in the original."""
     quads = apriltag_quads(_twice_as_large(grey), dictionary, numbers)
     small = [(_in_small(corners), number) for corners, number in quads]
     return _fitted(grey, small, dictionary, LEAST_SCORE)
@@ -155,6 +158,7 @@ def _as_enlarged_tags(
 def _fitted(
     grey: NDArray[np.uint8], quads: Iterable[tuple[Array, int]], dictionary: str, least: float
 ) -> list[Sighting]:
+    """Refine the corners of quadrilaterals of known number; keep scores of at least `least`."""
     sightings = (
         refine_corners(grey, quad, dictionary=dictionary, marker_id=number)
         for quad, number in quads
@@ -171,6 +175,7 @@ def _missing(numbers: Iterable[int], found: Iterable[Sighting], several: bool = 
 
 
 def _plain(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
+    """Detect by a detector alone, with 0.5 px as the standard deviation of each coordinate."""
     if not marker_family(dictionary).is_in_opencv:
         quads = apriltag_quads(grey, dictionary, numbers)
     else:
@@ -184,6 +189,7 @@ def _plain(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> 
 def _decoded(
     corners: Iterable[ArrayLike], ids: ArrayLike | None, numbers: Sequence[int]
 ) -> list[tuple[Array, int]]:
+    """Return corners (4, 2) and number of those of OpenCV's markers that are wanted."""
     pairs = zip(corners, [] if ids is None else np.ravel(ids), strict=True)
     quads = [(np.asarray(quad, dtype=float).reshape(4, 2), int(number)) for quad, number in pairs]
     return [(quad, number) for quad, number in quads if number in numbers]
@@ -205,6 +211,7 @@ def _brightened(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
 
 
 def _enlarged(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
+    """Recognise markers in a picture twice as large; refine in the original."""
     large = _twice_as_large(grey)
     corners, _, others = _detector(dictionary, patient=True).detectMarkers(large)
     # Corners are refined in the original pixels in either case.
@@ -260,6 +267,7 @@ def recognise(
 
 
 def _is_marker_like(corners: Array) -> bool:
+    """Return whether corners are convex, all sides over 8 px and over 0.2 of the longest."""
     sides = np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)
     convex = cv2.isContourConvex(corners.astype(np.float32))
     return bool(convex and sides.min() > 8 and sides.min() > 0.2 * sides.max())
@@ -268,7 +276,7 @@ def _is_marker_like(corners: Array) -> bool:
 def _best_turn(
     grey: NDArray[np.uint8], corners: Array, dictionary: str, number: int
 ) -> Array | None:
-    """Rotate a quadrilateral's corners for best correlation with a marker; None up to 0.5."""
+    """Roll a quadrilateral's corners for best correlation with a marker; None if it is <= 0.5."""
     target = marker_picture(dictionary, number, 4)
     inner = np.ascontiguousarray(target[4:-4, 4:-4])
     best, best_score = None, 0.5
@@ -336,5 +344,6 @@ def _is_inside(sighting: Sighting, other: Sighting) -> bool:
 
 
 def _moved(sighting: Sighting, offset: tuple[int, int]) -> Sighting:
+    """Return a sighting with an offset in column and row added to its corners [px]."""
     corners = sighting.corners_px + np.asarray(offset, dtype=float)
     return Sighting(sighting.marker_id, corners, sighting.covariance, sighting.score, sighting.blur)

@@ -52,8 +52,9 @@ def unknowns_covariance(
     """
     rectangle = _Rectangle.around(points, lags=lags)
     left = rectangle.transform(residual[:, None])
-    waves = rectangle.transform(design)
-    weighted = _mixed(inverse, waves)
+    waves = rectangle.transform(design)  # J
+    weighted = _mixed(inverse, waves)  # W J'
+    # M R M by lag, as the residual shows it; from it, in place of R, the missing part by lag
     seen = rectangle.mean_products(left, left)
     spectrum = rectangle.spectrum(seen)
     inner = rectangle.inner(waves, spectrum)
@@ -158,5 +159,5 @@ def _sandwich(rows: Array, inner: Array) -> Array:
 
 
 def _mixed(matrix: Array, waves: _Waves) -> _Waves:
-    """Sum transformed fields with the factors of each row of a matrix."""
+    """Multiply a matrix (m, k) by k transformed fields; return m transformed fields."""
     return np.asarray(np.tensordot(matrix.astype(np.float32), waves, axes=1), np.complex64)

@@ -36,10 +36,10 @@ _LAGS_PX = 8
 _SLOPE = np.array([[1.0, -8.0, 0.0, 8.0, -1.0]]) / 12
 """Five-point central difference; that of three points underestimates the slope of a sharp edge."""
 
-_UNITS = np.eye(8).reshape(8, 4, 2)
-_USUAL_SIDE = 60.0
-_MARGIN = 0.09
-_BLURS_INSIDE = 2.5
+_UNITS = np.eye(8).reshape(8, 4, 2)  # of each corner coordinate a unit step
+_USUAL_SIDE = 60.0  # px, to about which longer sides are downsampled
+_MARGIN = 0.09  # of the side: most of the white margin around the marker that is compared
+_BLURS_INSIDE = 2.5  # standard deviations over which blur reaches in from beyond the margin
 
 
 @dataclass(frozen=True)
@@ -253,6 +253,7 @@ def _slopes_of_homography(corners: Array, H: Array) -> Array:
 
 
 def _inverse_normal(design: Array) -> Array | None:
+    """Invert the normal equations' matrix of a design (14, n); None where it is singular."""
     normal = design @ design.T
     normal[8, 8] += 1e-3 * normal[8, 8] + 1e-9  # a sharp picture does not determine its blur
     try:
@@ -262,6 +263,10 @@ def _inverse_normal(design: Array) -> Array | None:
 
 
 def _likeness(own: Array, values: Array, drawn: Array, dictionary: str) -> float:
+    """Compute the correlation of values and drawn marker inside the black border [-].
+
+    `own` are the pixels in the marker's unit square; 0 where fewer than 16 are inside.
+    """
     # Only cells inside the black border distinguish markers: all have the border.
     inside = (np.abs(own - 0.5) < 0.5 - 1 / _cells(dictionary)).all(axis=1)
     if inside.sum() < 16:
@@ -271,10 +276,11 @@ def _likeness(own: Array, values: Array, drawn: Array, dictionary: str) -> float
 
 
 def _is_used(own: Array, fit: _Fit, cells: int) -> NDArray[np.bool_]:
-    """Compare `own`, in the unit square, with the marker and its margin not blurred from outside.
+    """Return whether points can be compared with the model: on the marker, or close around it.
 
-    True inside: on the marker or on at most 0.09 of its side around. Every print has a margin one
-    cell wide; what lies beyond it is not known.
+    Every print has a margin one cell wide; what lies beyond it is not known. Used is the margin
+    that `_BLURS_INSIDE` of blur leave unaffected by that, up to `_MARGIN` of the side. `own` (n, 2)
+    are the points in the marker's unit square, `cells` the cells along its side.
     """
     blurred = _BLURS_INSIDE * fit.blur / _shortest_side(fit.corners)
     margin = np.clip(1 / cells - blurred, 0.0, _MARGIN)
@@ -282,6 +288,7 @@ def _is_used(own: Array, fit: _Fit, cells: int) -> NDArray[np.bool_]:
 
 
 def _draw(dictionary: str, marker_id: int, H: Array, fit: _Fit, shape: tuple[int, ...]) -> Array:
+    """Draw the marker for a fit in a patch of a shape, blurred, 0 black to 1 white."""
     cells = _cells(dictionary)
     n = 4
     # Half the resolution at which it is sampled where foreshortening is greatest: interpolation
@@ -290,6 +297,7 @@ def _draw(dictionary: str, marker_id: int, H: Array, fit: _Fit, shape: tuple[int
     cell_px = int(np.clip(2 ** np.floor(np.log2(fine_px / 2)), 4, 64))
     picture = marker_picture(dictionary, marker_id, cell_px)
     inner = cells * cell_px
+    # From pixels of the picture to the unit square, whose corners are those of the border.
     own_from_drawn = np.array(
         [[1, 0, 0.5 - cell_px], [0, 1, 0.5 - cell_px], [0, 0, inner]], dtype=float
     ) / inner  # fmt: skip
@@ -303,14 +311,17 @@ def _draw(dictionary: str, marker_id: int, H: Array, fit: _Fit, shape: tuple[int
 
 
 def _cells(dictionary: str) -> int:
+    """Return the number of cells along a side of a marker, border included, margin not."""
     return marker_picture(dictionary, 0, 1).shape[0] - 2
 
 
 def _first_blur(corners: Array) -> float:
+    """Guess a blur to start from: 1/60 of the shortest side, within 0.6 to 2 px."""
     return float(np.clip(_shortest_side(corners) / 60, 0.6, 2.0))
 
 
 def _sides(corners: Array) -> Array:
+    """Compute the lengths of a quadrilateral's sides, shape (4,)."""
     return np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)
 
 

@@ -22,10 +22,10 @@ from tracking.camera.lens import Camera, CameraPose, project, project_with_deriv
 from tracking.pose import BodyPose, BodyPrior, rotation_with_derivatives
 from tracking.shared import CAMERA, LENS
 
-_ITERATIONS = 25
-_HUBER = 1.5
+_ITERATIONS = 25  # largest number of Gauss-Newton steps
+_HUBER = 1.5  # standard deviations beyond which a residual has less weight
 
-_FIRST_LOOKS = 5
+_FIRST_LOOKS = 5  # steps after which a hopeless alignment is given up
 _LEVER = 0.375  # of the top's length, for yaw: calibrated so that its errors are as stated
 
 HOPELESS_SCORE = 0.25
@@ -117,9 +117,8 @@ class _Job:
     `origin` is column and row of the crop's first pixel, `picture` the crop, blurred, `slopes` its
     derivatives by column (3 colours) and row, `hidden` 1 at pixels not to use, `points` (n, 3) in
     the body frame and `colours` (n, 3) the template's, blurred alike, `correlated` the number of
-    values that count as one independent value, `floor` a covariance (6, 6) added to the pose's,
-    `points_by` as of the
-    template.
+    values that count as one independent value, `floor` a covariance (6, 6) added to the pose's, and
+    `points_by` the template's.
     """
 
     origin: Array
@@ -201,6 +200,7 @@ class _Job:
             normal = weighed.T @ J.reshape(-1, 7) + np.diag(held)
             gradient = weighed.T @ residual.ravel() + held * (centre - state)
             step = np.linalg.solve(normal, gradient)
+            # Longest step in x, y, z [m], roll, pitch, yaw [rad] and scale [-]
             limit = np.array([0.02, 0.02, 0.02, 0.1, 0.1, 0.2, 0.01])
             step *= min(1.0, float(np.min(limit / np.maximum(np.abs(step), 1e-12))))
             state = state + step
@@ -209,6 +209,10 @@ class _Job:
         return self._conclude(state, normal)
 
     def _conclude(self, state: Array, normal: Array) -> Alignment | None:
+        """Build the alignment at a solution (7,): covariance, derivatives by shared errors, score.
+
+        `normal` (7, 7) is the matrix of the last normal equations, prior included.
+        """
         look = self._look(state)
         if look is None:
             return None
@@ -231,6 +235,7 @@ class _Job:
         effective = residual.size / self.correlated
         covariance = spread[:6, :6] + self.floor
         pose = BodyPose(wrapped, covariance, by_cause)
+        # Of Gaussian residuals whose variance is the one that they show
         log_likelihood = -0.5 * effective * float(np.log(max(noise.mean(), 1e-6)))
         return Alignment(pose, score, log_likelihood)
 
@@ -284,6 +289,10 @@ class _Job:
 
 
 def _least_covariance(template: BodyTemplate) -> Array:
+    """Return the covariance (6, 6) below which no alignment comes, by `MODEL_STEPS`.
+
+    The error of yaw is that of position over a lever of `_LEVER` lengths of the plate.
+    """
     slip = MODEL_STEPS * template.step
     turn = slip / (_LEVER * template.plate.length)
     return np.diag([slip, slip, 0, 0, 0, turn]) ** 2

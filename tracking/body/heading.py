@@ -20,9 +20,9 @@ from tracking.errors import AmbiguousHeading
 LEAST_LOG_ODDS = 7.0
 """Least log odds of the chosen headings to the exchanged ones: a thousand to one [-]."""
 
-_TURN_SD = 0.5
-_MOST_EVIDENCE = 6.0
-_TRAVEL_EVIDENCE = 6.0
+_TURN_SD = 0.5  # of the turn between two photographs [rad]
+_MOST_EVIDENCE = 6.0  # largest log odds of headings that one photograph may give
+_TRAVEL_EVIDENCE = 6.0  # log score of a move straight ahead
 
 
 def resolve_headings(

@@ -68,7 +68,10 @@ class RefinedCorners:
 
 @dataclass(frozen=True)
 class _Edge:
-    """Distance of an edge from its side of the outline, outwards, at both ends, (2,) [px]."""
+    """Distance of an edge from its side of the outline, outwards, at both ends, (2,) [px].
+
+    Its covariance (2, 2) has the side's own errors, not those that opposite sides have in common.
+    """
 
     offsets: Array
     covariance: Array
@@ -149,6 +152,7 @@ def _sd(of: tuple[float, float], length: float) -> float:
 
 
 def _length(side: Array) -> float:
+    """Return the distance between the ends of a side [px]."""
     return float(np.linalg.norm(side[-1] - side[0]))
 
 
@@ -185,6 +189,7 @@ def _measurement(
             by_corner[2 * row + place, 2 * corner : 2 * corner + 2] = normal[at]
         own = slice(2 * row, 2 * row + 2)
         noise[own, own] = edge.covariance
+        # Opposite sides share an error, by the extent of the plate from one to the other.
         common[own, k % 2] = _sd(OUTLINE_SD, _length(outline[(k + 1) % 4]))
     return by_corner, noise + common @ common.T
 
@@ -229,6 +234,7 @@ def _profiles(pixels: NDArray[np.uint8], at: Array, across: Array, reach: float)
 
 
 def _distances(count: int) -> Array:
+    """Return the distances of a profile's samples from its middle, `_STEP` apart."""
     return _STEP * (np.arange(count) - (count - 1) / 2)
 
 

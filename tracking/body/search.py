@@ -27,9 +27,9 @@ ACCEPTED_SCORE = 0.7
 LEAST_MATCH = 0.3
 """Least correlation of a coarse match to align it [-]."""
 
-_TURNS = 24
+_TURNS = 24  # headings of `match_turned`
 _PEAK_CELLS = 3  # half the width in which a peak of `match_whole` is the highest
-_CELLS = 14
+_CELLS = 14  # pixels of the rectified photograph along the plate
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,10 @@ def _all_headings(
     best: Alignment, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose,
     template: BodyTemplate, prior: BodyPrior, visible: NDArray[np.bool_] | None,
 ) -> tuple[Alignment, ...]:  # fmt: skip
+    """Align from the opposite heading, too, and from those across it for a square plate.
+
+    Returns alignments that differ by over 45 degrees from each other, the likeliest first.
+    """
     plate = template.plate
     square = abs(plate.length - plate.width) < 0.2 * max(plate.length, plate.width)
     options = [best]
@@ -115,10 +119,12 @@ def _all_headings(
 
 
 def _differ(a: Alignment, b: Alignment) -> bool:
+    """Return whether the headings of two alignments differ by over 45 degrees."""
     return bool(np.cos(a.pose.state[5] - b.pose.state[5]) < 0.7)
 
 
 def _turned_about_plate(planar: Array, centre: tuple[float, float], turn: float) -> Array:
+    """Turn x, y, yaw of the body by an angle about the plate's centre, given in its frame."""
     x, y, yaw = planar
     c, s = np.cos([yaw, yaw + turn]), np.sin([yaw, yaw + turn])
     shift = np.column_stack((c * centre[0] - s * centre[1], s * centre[0] + c * centre[1]))
@@ -284,6 +290,10 @@ def pose_of_match(template: BodyTemplate, plane: Plane, row: int, column: int, y
 
 
 def _apart(peaks: list[tuple[float, Array]], most: int, length: float) -> list[Array]:
+    """Keep the best of peaks alike in place and heading (non-maximum suppression), at most `most`.
+
+    Alike are those within 0.15 of the robot's `length` and 37 degrees.
+    """
     kept: list[Array] = []
     for _, peak in sorted(peaks, key=lambda pair: -pair[0]):
         near = [np.hypot(*(peak[:2] - other[:2])) < 0.15 * length for other in kept]
@@ -321,6 +331,7 @@ def turned_template(
 
 
 def _shrunk(template: BodyTemplate, cell: float) -> NDArray[np.float32]:
+    """Scale the template's colours to pixels of side `cell` [m], at least 4 in each direction."""
     ratio = template.step / cell
     size = [max(4, round(n * ratio)) for n in template.colours.shape[1::-1]]
     small = cv2.resize(template.colours, size, interpolation=cv2.INTER_AREA)

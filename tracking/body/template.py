@@ -178,6 +178,7 @@ def make_template(
 
 
 def _grid(plate: TopPlate, step: float) -> Array:
+    """Compute the raster of a plate with margins: rows from the front, columns from the left."""
     rear, front, right, left = plate.extent
     x = np.arange(front, rear, -step)
     y = np.arange(left, right, -step)
@@ -186,6 +187,7 @@ def _grid(plate: TopPlate, step: float) -> Array:
 
 
 def _refuse_cut(corners_px: Array, size: tuple[int, int]) -> None:
+    """Raise `BodyError` where a corner of the top lies outside the picture."""
     if (corners_px < 0).any() or (corners_px > np.subtract(size, 1)).any():
         raise BodyError(
             "the robot's top (in a composite picture its body) is cut by the edge of the annotated "

@@ -94,6 +94,7 @@ def find_board(
 def _find_checkerboard(
     grey: NDArray, board: Checkerboard, name: str, *, quick: bool
 ) -> SeenBoard | None:
+    """Detect all corners of a checkerboard, in rows; None where not all are found."""
     shape = (board.columns, board.rows)
     found, corners = cv2.findChessboardCorners(grey, shape)
     if not found:
@@ -120,6 +121,7 @@ def _refinement_reach(grid: NDArray) -> int:
 
 
 def _find_charuco(grey: NDArray, board: CharucoBoard, name: str) -> SeenBoard | None:
+    """Detect corners of a ChArUco board by its markers; None where fewer than 6 are found."""
     target = cv2.aruco.CharucoBoard(
         (board.columns, board.rows), board.square, board.marker, dictionary_named(board.dictionary)
     )

@@ -123,9 +123,15 @@ def calibrate(
 def _unsure_of_terms(
     fit: CameraCalibration, general: CameraCalibration
 ) -> CameraCalibration | None:
-    """Return a fit with the uncertainty of what it leaves out, by the fit of all terms.
+    """Add to a fit's covariance what the distortion terms that it leaves out may change.
 
-    None where it is improbable that nothing left out matters.
+    Args:
+        fit: Fit of a simpler lens model.
+        general: Fit of all terms, which tells how large those left out may be.
+
+    Returns:
+        The fit with the larger covariance; None where the probability that no term left out
+        matters is below `_IMPROBABLE`, so that a model with more terms must be fitted.
     """
     covariance, none_matters = with_omitted_terms(
         _parameters(fit), fit.camera.covariance, _FITTED[fit.lens_model],
@@ -156,7 +162,10 @@ def _best_of_left_out(
 
 
 def _left_out(views: Sequence[SeenBoard], size: tuple[int, int], lens_model: str) -> float:
-    """Compute the mean squared distance of corners in pictures by the lens of others [px²]."""
+    """Compute the mean squared distance of corners from their projection by cross-validation [px²].
+
+    Pictures are split into `_FOLDS` parts; each part is predicted by the lens fitted to the others.
+    """
     missed = np.empty(len(views))
     fold = np.arange(len(views)) % min(_FOLDS, len(views))
     for number in np.unique(fold):
@@ -168,8 +177,8 @@ def _left_out(views: Sequence[SeenBoard], size: tuple[int, int], lens_model: str
                 view.points, view.corners_px, camera.matrix, camera.distortion
             )
             pose = CameraPose(_vector(turn), _vector(shift), np.zeros((6, 6)))
-            apart = view.corners_px - project(camera, pose, view.points)
-            missed[k] = np.sum(apart**2, axis=1).mean()
+            residual = view.corners_px - project(camera, pose, view.points)
+            missed[k] = np.sum(residual**2, axis=1).mean()
     return float(missed.mean())
 
 
@@ -184,6 +193,7 @@ class _Calibrated(NamedTuple):
 
 
 def _calibrated(views: Sequence[SeenBoard], size: tuple[int, int], lens_model: str) -> _Calibrated:
+    """Fit lens and poses of the board by OpenCV's unweighted least squares."""
     points = [view.points.astype(np.float32) for view in views]
     corners = [view.corners_px.astype(np.float32) for view in views]
     try:
@@ -203,10 +213,12 @@ def _calibrated(views: Sequence[SeenBoard], size: tuple[int, int], lens_model: s
 
 
 def _vector(found: ArrayLike) -> Array:
+    """Return OpenCV's column of numbers as a vector of floats."""
     return np.asarray(found, dtype=float).ravel()
 
 
 def _fit(views: Sequence[SeenBoard], size: tuple[int, int], lens_model: str) -> CameraCalibration:
+    """Fit a lens model to all pictures, with the covariance that correlated corners give."""
     found, fitted = _calibrated(views, size, lens_model), _FITTED[lens_model]
     errors = corner_errors([
         _compared(view, found.camera, turn, shift, fitted)
@@ -239,6 +251,7 @@ def _compared(
 
 
 def _corners_seen(views: Sequence[SeenBoard], size: tuple[int, int]) -> NDArray[np.int64]:
+    """Count the corners of all pictures in each cell of `_GRID`, shape (6, 8)."""
     corners = np.concatenate([view.corners_px for view in views]) + 0.5
     edges = [np.linspace(0, length, cells + 1) for length, cells in zip(size, _GRID, strict=True)]
     counts, _, _ = np.histogram2d(corners[:, 0], corners[:, 1], bins=edges)
@@ -246,6 +259,7 @@ def _corners_seen(views: Sequence[SeenBoard], size: tuple[int, int]) -> NDArray[
 
 
 def _check_determined(fit: CameraCalibration) -> None:
+    """Raise `CalibrationError` for a focal length not known to 5 %, or an impossible one."""
     focal, sd = fit.camera.matrix[0, 0], fit.sd[0]
     tilted = "photograph the board tilted by 20 to 45 degrees, each another way"
     if not np.isfinite(fit.camera.matrix).all() or not 0 < sd < 0.05 * focal:
@@ -262,6 +276,7 @@ def _check_determined(fit: CameraCalibration) -> None:
 
 
 def _warnings(fit: CameraCalibration) -> list[str]:
+    """List the warnings of `CameraCalibration.warnings`."""
     messages = []
     if fit.coverage < 0.6:
         messages.append(

@@ -90,6 +90,7 @@ def _likelihood(boards: Sequence[FittedBoard], reach: float) -> tuple[Array, Arr
             all_of = np.concatenate((by_pose, by_lens, missed[:, :, None]), axis=2)
             normal = np.einsum("nai,n,naj->ij", all_of, weight, all_of)
             log_det += float(np.linalg.slogdet(normal[:6, :6])[1])
+            # Schur complement: the pose of the board is eliminated.
             rest = normal[6:, 6:] - normal[6:, :6] @ np.linalg.solve(normal[:6, :6], normal[:6, 6:])
             information, pull = information + rest[:k, :k], pull + rest[:k, k]
             square += float(rest[k, k])
@@ -114,9 +115,9 @@ def _in_modes(board: FittedBoard, reach: float) -> tuple[Array, Array, Array, Ar
 
 
 def _likeness(points: Array, reach: float) -> Array:
-    """Compute K, shape (n, n)."""
-    apart = points[:, None] - points[None]
-    return np.exp(-np.sum(apart**2, axis=2) / (2 * reach**2))
+    """Compute K, the correlation of smooth errors at the corners by their distance, (n, n)."""
+    offset = points[:, None] - points[None]
+    return np.exp(-np.sum(offset**2, axis=2) / (2 * reach**2))
 
 
 def _of_lens(boards: Sequence[FittedBoard], reach: float, noise: float, ratio: float) -> Array:

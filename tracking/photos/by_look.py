@@ -298,6 +298,7 @@ def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> AnnotatedPose
 def _pose_at(
     corners_px: Array, covariance: Array, top: MarkedTop, scene: Scene, view: CameraPose
 ) -> AnnotatedPose:
+    """Fit the robot's pose to corners of its top in the picture, with their covariance (8, 8)."""
     corners = top.plate.corners_body
     pose = fit_pose(scene.camera, view, points_body=corners, corners_px=corners_px,
                     covariance=covariance, prior=scene.prior)  # fmt: skip
@@ -305,6 +306,7 @@ def _pose_at(
 
 
 def _find_batch(job: _Search) -> list[BodyCandidates | None]:
+    """Find the robot in each photograph of a job, first near where it was last found."""
     found: list[BodyCandidates | None] = []
     near = None
     for photo, view, template in job.photos:
@@ -318,6 +320,7 @@ def _find_batch(job: _Search) -> list[BodyCandidates | None]:
 def _find_one(
     job: _Search, photo: Photo, view: CameraPose, template: BodyTemplate, near: Array | None
 ) -> BodyCandidates | None:
+    """Find the robot near a place, if one is given; else, or if it fails, in the whole picture."""
     try:
         pixels = read_pixels(photo.path, size=job.camera.size)
     except PhotoError:

@@ -19,8 +19,8 @@ from tracking.photos.scene import Photo, Scene
 from tracking.photos.workers import Progress
 from tracking.shared import SharedErrors
 
-_LONGEST = 100  # photographs
-_NEGLIGIBLE = 1e-3
+_LONGEST = 100  # photographs from which the spread of edges is estimated
+_NEGLIGIBLE = 1e-3  # probability by the floor's markers of a spread that the walk must ask for
 
 
 def edge_spread(
@@ -39,6 +39,10 @@ def edge_spread(
         gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median
             interval.
         corrections: Manual corrections; photographs whose pose they delete or set are not used.
+
+    Returns:
+        The spread by floor and walk; that of `fit` where fewer than 3 photographs are usable. The
+        walk's likelihood is made non-decreasing: it tells only how large the spread is at least.
 
     Raises:
         CorrectionError: A correction names a photograph without a pose, or one twice.
@@ -119,6 +123,7 @@ def track_by_marker(
 def _robot_unseen(
     scene: Scene, robot: MarkedRobot, photos: Sequence[Photo], seen: FloorSeen
 ) -> str:
+    """Say that no photograph shows the robot's marker, and which others the first one shows."""
     first = next(photo for photo in photos if photo.name == seen.detections[0].photo)
     other = other_markers(read_pixels(first.path), robot, scene.floor)
     advice = "look at the first photograph with `zebro-lab track --preview`"

@@ -77,7 +77,7 @@ def track_exposures(
 
 
 def _exposures(scene: Scene, seen: FloorSeen, photo: Photo) -> tuple[Exposure, ...]:
-    """Find exposures by the robot's marker, or without one by the exposure of annotated top.
+    """Find exposures by the robot's marker, or without one by the look of the annotated exposure.
 
     Raises CompositeError if `scene.body_size` is None or none is found, and as `marked_tops`.
     """
@@ -113,6 +113,7 @@ def _annotated(scene: Scene, seen: FloorSeen, photo: Photo) -> AnnotatedPose:
 
 
 def _rough_note(exposures: Sequence[Exposure]) -> list[str]:
+    """Warn if a third of the exposures or more have the coarse raster's pose."""
     rough = sum(exposure.is_rough for exposure in exposures)
     if rough < _MANY_ROUGH * len(exposures):
         return []

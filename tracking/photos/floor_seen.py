@@ -89,6 +89,7 @@ def see_floor(
 
 
 def _why_none(results: Sequence[PhotoResult]) -> str:
+    """Say why no photograph can be used: the first one's problem, and how many have it."""
     first = results[0]
     common, count = Counter(result.problem for result in results).most_common(1)[0]
     so = f" (the same for {count} of them)" if common == first.problem and count > 1 else ""

@@ -120,6 +120,7 @@ def _scale(scene: Scene, view: FloorView, pose: CameraPose) -> float:
 
 
 def _side_px(corners_px: np.ndarray) -> float:
+    """Compute the mean side of a quadrilateral (4, 2) [px]."""
     return float(np.linalg.norm(corners_px - np.roll(corners_px, 1, axis=0), axis=1).mean())
 
 
@@ -135,11 +136,13 @@ def _tracked(scene: Scene, fit: FloorFit, detection: Detection) -> Tracked | Non
 
 
 def _planar(tracked: Tracked) -> tuple[float, float, float]:
+    """Return x, y [m] and yaw [rad] of the first pose of a track."""
     x, y, yaw = tracked.track.poses[0].tolist()
     return x, y, yaw
 
 
 def _tape_checks(scene: Scene, view: FloorView, pose: CameraPose) -> tuple[TapeCheck, ...]:
+    """Compare the distances of all pairs of marks seen, by the map and by the photograph."""
     places = {}
     for key, mark in scene.floor.marks.items():
         if key in view.pixels:

@@ -144,6 +144,7 @@ def shared_errors(scene: Scene, seen: FloorSeen) -> SharedErrors:
 
 
 def _track_notes(track: Track) -> list[str]:
+    """Name gaps of the path, and poses far from it."""
     of = track.observations
     notes = [
         f"no pose is found in the {of[k].t - of[k - 1].t:.1f} s before {of[k].photo}: the path is "
@@ -159,6 +160,7 @@ def _track_notes(track: Track) -> list[str]:
 
 
 def _correction_note(corrections: Sequence[Correction]) -> list[str]:
+    """Say how many corrections are applied, if there are any."""
     if not corrections:
         return []
     moved = sum(isinstance(correction, Move) for correction in corrections)

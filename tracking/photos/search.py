@@ -78,6 +78,7 @@ def search_photos(
 
 
 def _search_batch(job: tuple[Wanted, Sequence[Photo]]) -> list[PhotoResult]:
+    """Detect markers in consecutive photographs, each near those of the one before."""
     wanted, photos = job
     looks: list[PhotoResult] = []
     hint: Detection | None = None
@@ -114,6 +115,7 @@ def look_at(photo: Photo, wanted: Wanted, hint: Detection | None = None) -> Phot
 def _detected(
     name: str, pixels: NDArray[np.uint8], wanted: Wanted, hint: Detection | None
 ) -> Detection:
+    """Detect markers; floor markers that `hint` does not show are sought only if that fails."""
     robot = wanted.robot
     if robot is None:
         return _floor_alone(name, pixels, wanted.floor)

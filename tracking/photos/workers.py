@@ -19,6 +19,7 @@ PROCESSES = 2
 """Usual number of worker processes: each holds some photographs in memory."""
 
 LONGEST_BATCH = 12
+"""Largest number of photographs in a batch, after each of which progress is reported."""
 
 Item = TypeVar("Item")
 Job = TypeVar("Job")
@@ -115,6 +116,7 @@ def run_batches(
 
 
 def _one_thread() -> None:
+    """Keep OpenCV of a worker process to one thread: the processes share the processors."""
     cv2.setNumThreads(1)
 
 

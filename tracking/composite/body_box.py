@@ -58,6 +58,7 @@ class BodyBox:
             state: Pose of the robot as `BodyPose.state`, shape (6,).
         """
         width, height = self.camera.size
+        # Of the corners every second one is an upper one.
         return _filled(self._outline(state, self._corners(0.0)[1::2]), (height, width))
 
     def hidden_on(self, plane: Plane, pose: Array, *, left: float) -> NDArray[np.bool_]:
@@ -80,6 +81,7 @@ class BodyBox:
         return _filled(points, plane.seen_px.shape[:2])
 
     def _corners(self, left: float) -> Array:
+        """Return the box's corners with margins, each lower one before its upper, (8, 3) [m]."""
         length, width = self.size
         return np.array([
             (side_x * (0.5 + left) * length, side_y * (0.5 * width + left * length), z)
@@ -89,10 +91,12 @@ class BodyBox:
         ])  # fmt: skip
 
     def _outline(self, state: Array, points_body: Array) -> Array:
+        """Project points of the body for a pose (6,), shape (n, 2) [px]."""
         return project(self.camera, self.view, body_to_floor(points_body, state))
 
 
 def _filled(points: Array, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Fill the convex hull of points (column, row); nothing where any is not finite."""
     mask = np.zeros(shape, dtype=np.uint8)
     if np.isfinite(points).all():
         cv2.fillConvexPoly(mask, cv2.convexHull(np.round(points).astype(np.int32)), (1,))

@@ -53,6 +53,7 @@ class FloorColours:
             The model; up to three tenths of the points used may show the robot.
         """
         light = _smooth(picture, used, width)
+        # Variance of the nearest `_TRUSTED` of a Gaussian's points in 3-D, over that of all
         inner = chi2.cdf(chi2.ppf(_TRUSTED, 3), 5) / _TRUSTED
         covariance = np.cov((picture - light)[used].T)
         for _ in range(_ROUNDS):

@@ -159,7 +159,7 @@ class KnownExposure:
             template: Template of the robot.
             visible: True at pixels to use, shape (height, width).
             least: Least correlation to accept [-].
-            outlier_sd: As for `tracking.body.align`.
+            outlier_sd: Standard deviations beyond which a point is left out as an outlier [-].
 
         Returns:
             The alignment, or None where the robot leaves the picture, fewer than 60 points are

@@ -52,6 +52,7 @@ def _cheap_tour(cost: Array) -> list[int]:
     """
 
     def length(tour: list[int]) -> float:
+        """Return the total cost of a tour's steps [m]."""
         return float(cost[tour[:-1], tour[1:]].sum())
 
     tour = min((_nearest_neighbours(cost, start) for start in range(len(cost))), key=length)
@@ -61,6 +62,7 @@ def _cheap_tour(cost: Array) -> list[int]:
 
 
 def _nearest_neighbours(cost: Array, start: int) -> list[int]:
+    """Build a tour from a start: from each pose to the cheapest that is not yet in it."""
     tour, left = [start], set(range(len(cost))) - {start}
     while left:
         last = tour[-1]

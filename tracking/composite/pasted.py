@@ -47,7 +47,7 @@ top [-]."""
 LEAST_ODDS = 0.9
 """Least log odds of an exposure, mean over the visible points of its top [-]."""
 
-MOST_EXPOSURES = 40
+MOST_EXPOSURES = 40  # where the search for more ends
 
 LEFT, FLOOR_LEFT = 0.05, 0.25
 """Margins of a cut-out around the robot, in lengths of the robot: what is hidden in any case, and
@@ -341,6 +341,7 @@ class PastedReading(Reading):
             place = body.on(some)
             seen, visible = sample(self.layers, place), sample(shown, place) > 0.9
             same = robot_density(seen[..., :3] - robot) / np.maximum(seen[..., 3], 1e-12)
+            # An occluded point is given 0.4 of the picture's density: it costs at most log 0.2.
             log_odds = np.log(_SHOWS * same + 0.4 * (1 - _SHOWS))
             gain = np.where(visible, log_odds, 0.0).mean(axis=(1, 2))
             parts.append((gain, visible.mean(axis=(1, 2))))

@@ -164,7 +164,7 @@ def find_exposures_like(
 
     Raises:
         CompositeError: The known exposure is cut by the picture's edge, too small or of too little
-            contrast, or fewer than two exposures are found and aligned.
+            contrast, or fewer than two exposures are found.
         ValueError: The picture shows nothing of the plane of the top (see `floor_in_view`).
     """
     reading = _reading(

@@ -106,6 +106,7 @@ def headed(pose: Array, poses: Array, *, square: bool) -> Array:
     """
     nearest = poses[int(np.argmin(distances(poses, pose)))]
     dx, dy = pose[:2] - nearest[:2]
+    # The chord of an arc has the mean of the headings at its ends, whichever way it is walked.
     arc_yaw = 2 * np.arctan2(dy, dx) - nearest[2]
     turns = np.arange(4) * np.pi / 2 if square else np.array([0.0, np.pi])
     turn = turns[np.argmax(np.cos(pose[2] + turns - arc_yaw))]

@@ -169,7 +169,7 @@ class ChainProblem:
     def fit(self, process: Process, start: _Point) -> _Fitted:
         """Fit states and shared errors by Gauss-Newton, at most 8 steps, for given noise densities.
 
-        It ends when a step changes the cost by less than 1e-4 of it, or of 1.
+        It ends when a step changes the cost by less than 1e-4 of it, or than 1e-4 if it is below 1.
         """
         weights = [np.linalg.inv(part.spread) for part in self.parts]
         links = [link_weights(np.diff(part.times), process) for part in self.parts]

@@ -241,7 +241,7 @@ class _Run:
         self._zero = zero
 
     def _set_load(self, target: float) -> None:
-        """At standstill have a normal force set [N], unless it is; 0 removes all load."""
+        """Have a normal force set at standstill, unless it already is; 0 removes all load [N]."""
         if target == self._loaded:
             return
         self._loaded = None

@@ -268,7 +268,7 @@ def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, .
 
 
 def _registers(frame: TomlTable, layout: str, channels: int) -> Registers:
-    """Read the register map; for `poll` all values must be adjacent, as one request moves them."""
+    """Read the register map; in `poll`, values of one read or one write must be adjacent."""
     last = DUMP_REGISTERS - 2  # a value takes two
     positions = frame.wholes("registers", most=last)
     if len(positions) != channels:

@@ -127,7 +127,7 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
 
 
 def _starting_poses(camera: Camera, points: Array, pixels: Array) -> list[CameraPose]:
-    """Solve the PnP problem in closed form: all finite solutions, possibly none.
+    """Solve the PnP problem without a first guess: all finite solutions, possibly none.
 
     Points (n, 3) of one height count as a flat target; OpenCV wants such a target at z = 0.
     """

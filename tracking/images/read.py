@@ -73,7 +73,7 @@ def find_photos(folder: Path) -> tuple[Path, ...]:
 
 
 def _counting(name: str) -> list[tuple[int, int, str]]:
-    """Return a key for natural order: digits compare as numbers, and come after letters."""
+    """Return a key for natural order: digits compare as numbers, all else without case."""
     parts = re.split(r"(\d+)", name.lower())
     return [(1, int(part), "") if part.isdigit() else (0, 0, part) for part in parts]
 
@@ -166,7 +166,7 @@ def _upright(path: Path) -> PIL.Image.Image:
 
 
 def _refuse_unreadable(path: Path) -> None:
-    """Raise `PhotoError` unless the path is a regular, not too large file that is not HEIC."""
+    """Raise `PhotoError` unless this is a readable file, not empty, too large, or HEIC."""
     # Neither a FIFO, which would block until there is a writer, nor a device.
     if not path.is_file():
         found = "it is not a regular file; remove it from the folder"

@@ -79,8 +79,10 @@ def test_what_is_written_is_read_back(data, tmp_path_factory):
 def test_a_folder_without_the_columns_of_body_and_energies_is_read(walked, tmp_path):
     file = tmp_path / "path.csv"
     write_path(file, walked)
-    old = [line.rsplit(",", 6)[0] for line in file.read_text().splitlines()]
-    file.write_text("\n".join(old) + "\n")
+    table = pd.read_csv(file, dtype=str, keep_default_na=False)
+    later = ["body_force", *table.filter(regex="^work|energy$").columns]
+    assert len(later) == 5
+    table.drop(columns=later).to_csv(file, index=False)
     assert_same(read_walk(file), walked)
 
 

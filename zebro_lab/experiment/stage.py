@@ -170,7 +170,10 @@ def _require_same_source(data: Path, source: str) -> None:
 
 @contextmanager
 def _owned(data: Path) -> Iterator[None]:
-    """Create and lock the experiment's folder; undo it after a ZebroLabError without a journal."""
+    """Create and lock the experiment's folder.
+
+    The lock file is removed after a ZebroLabError that came before a journal was written.
+    """
     try:
         data.mkdir(parents=True, exist_ok=True)
         lock = Exclusive(data / LOCK_FILE, what=f"the experiment in {data}")

@@ -88,6 +88,11 @@ def _heights(
 ) -> tuple[Ground, Path, str]:
     """Read a map of heights, given by `heights = "FILE"` and keys beside it, or as a table.
 
+    Args:
+        table: Content of the `ground.toml`.
+        beside: Values of `_MAP_KEYS` that stand beside `heights`.
+        settings: Settings for the manifest, to which the map is added.
+
     Returns:
         The ground, the file of the map, and what it is in words.
     """

@@ -117,7 +117,7 @@ _SHOWN = 6.0  # s: longer, and the strides run into each other
 
 @sheet.styled
 def tilt(t: Array, predicted: Array, measured: Array, *, title: str, simulated: bool) -> Figure:
-    """Draw predicted and measured roll and pitch [deg] over the middle 6 s of the walk, or all.
+    """Draw predicted and measured roll and pitch [deg] over the middle 6 s of a walk.
 
     Args:
         t: Times, increasing, shape (n,) [s].

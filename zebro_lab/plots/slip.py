@@ -81,7 +81,10 @@ class _LoadCurve:
 
 
 def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
-    """Compute the quantiles of the curve and its peaks at each load level, from thinned draws."""
+    """Compute the posterior slip curve at each load level.
+
+    The bands are quantiles over about `_CURVES` draws; the peaks are medians over all draws.
+    """
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
     values = draws[:: max(1, len(draws) // _CURVES)].T[:, :, None]
     curves = []

@@ -141,8 +141,8 @@ def leg_angles(path: WalkPath, *, title: str) -> Figure:
 def _turning(t: Array, theta: Array) -> NDArray[np.bool_]:
     """Return whether each leg turns both before and after each sample, shape (n, 6).
 
-    It turns if its mean speed over `_HALF` before, and after, is `_AT_REST` or more. Beyond the
-    ends of the walk nothing is required.
+    It turns if its mean speed over `_HALF` before, and after, is `_AT_REST` or more. Where the walk
+    has less than half of that time before or after a sample, nothing is required.
 
     Args:
         t: Times, shape (n,) [s].
@@ -230,12 +230,12 @@ def turn_panels(
         angle: The angle, shape (n, 6) [rad].
         name: Name of the line.
         label: What the vertical axes show.
-        least: Lower limit of the vertical axes, which show a turn [deg].
+        least: Lower limit of the vertical axes, which show one turn from there on [deg].
         title: Title of the figure; "(simulated)" is appended.
     """
     shown = (np.degrees(angle) - least) % 360 + least
     turned = np.abs(np.diff(shown, axis=0, prepend=shown[:1])) > 180
-    lines = {name: np.where(turned, np.nan, shown)}  # no line across the jump from 360 to 0
+    lines = {name: np.where(turned, np.nan, shown)}  # no line where it jumps by a turn
     limits = float(least), float(least + 360)
     figure = leg_panels(
         path.t, path.contact, lines, limits, label=label, unit="deg", title=title

@@ -83,7 +83,7 @@ def reach(request: ReachRequest, watcher: Watcher) -> ReachResult:
     require_replaceable(request.out, REACH, inputs=model.inputs)
     walking = _walking(request, model, watcher)
     planned = _planned(goals, walking, watcher)
-    content: dict[str, object] = {}
+    content: dict[str, object] = {}  # of the manifest, which is written last
     with result_folder(request.out, REACH, content=content) as draft:
         ways = tuple(
             _walked(draft, number, goals, manoeuvre, plan, walking, watcher)

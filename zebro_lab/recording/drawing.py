@@ -84,6 +84,8 @@ _PPM: Final = 1e6
 def with_uncertainty(value: float, half_width: float) -> str:
     """Format a value and its uncertainty, both to the first two digits of the latter.
 
+    The value is alone if the uncertainty is 0 or not finite.
+
     Args:
         value: Value, in any unit.
         half_width: Half width of the interval around it, in the same unit.

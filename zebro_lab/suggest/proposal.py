@@ -79,7 +79,7 @@ class Proposal:
 def knowledge_of(
     posterior: SlipPosterior, z: Array, *, rate: float, alone: bool = False
 ) -> Knowledge:
-    """Return what a calibration knows.
+    """Compute the information of a calibration's priors and blocks, around usable draws.
 
     Args:
         posterior: Blocks, law and priors; coordinates are independent a priori.

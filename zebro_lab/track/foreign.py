@@ -101,8 +101,12 @@ def _planar_columns(
 ) -> dict[str, Array]:
     """Return the columns of `track.csv` that are known of a trajectory in its plane, in SI.
 
-    A covariance is left out unless complete. A table's is also left out if its plane is not xy,
-    since its columns refer to x and y of the table.
+    A covariance is left out unless complete, and for a table whose plane is not xy, since columns
+    of a covariance refer to x and y of the table.
+
+    Args:
+        trajectory: The trajectory.
+        sd: Standard deviations that give a covariance, see `read_foreign_track`; None without.
     """
     poses = trajectory.poses
     x, y = poses.position.T

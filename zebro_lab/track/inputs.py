@@ -94,7 +94,11 @@ def body_prior(
 
 
 def _standing_height(described: RobotFile) -> float:
-    """Compute how high the body's origin is while the robot stands, by its marker [m]."""
+    """Compute the height of the standing body's origin: the marker's minus its place above it [m].
+
+    Raises:
+        SettingsError: The marker's height above the floor is not in `robot.toml`.
+    """
     place = described.marker
     if place is None or place.height is None:
         raise SettingsError(

@@ -150,7 +150,7 @@ def _draw_map(
 
 
 def _time_labels(track: Track, poses: Array) -> Sequence[str]:
-    """Return a label for each row of `poses`: the time of about `_MOST_LABELS`, else empty.
+    """Return a label for each row of `poses`: the time at about `_MOST_LABELS` rows, else empty.
 
     Args:
         track: The track.

@@ -175,6 +175,7 @@ def write_validation(
         _write_tables(draft, runs)
         for each in shown:
             undrawn = draw_validation(draft, each, simulated=is_simulated(source), form=form)
+            # The manifest, written last, holds this list.
             notes += [f"{each.run.name}: {why}" for why in undrawn]
 
 

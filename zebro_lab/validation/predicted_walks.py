@@ -24,8 +24,8 @@ Pair = tuple[Path, Path]
 def pairs_of_runs(paths: Sequence[Path]) -> tuple[list[Pair], tuple[str, ...]]:
     """Return the folders of prediction and track of each run, and what is left out of several.
 
-    A single path must be a run with both. Of several, those that are none, and runs of the rig, are
-    left out, each with a note.
+    A single path must be a run with both. If there are several, those that are no such run are left
+    out, each with a note.
 
     Args:
         paths: Paths, in order.

@@ -54,7 +54,7 @@ def require_walks(request: WalksRequest, calibration: CalibrationRequest, watche
     """Check before a long fit of rig data that the walks can be fitted and written after it.
 
     Args:
-        request: Run folders of the walks, robot, and whether to estimate clock offsets.
+        request: Run folders of the walks, and whether to estimate clock offsets.
         calibration: Options with the folder of the calibration to come.
         watcher: Receives progress.
 
@@ -83,7 +83,7 @@ def calibrate_walks(
     """Fit legs and floor to walks, predict each from the others, and write `walks/`.
 
     Args:
-        request: Run folders of the walks, robot, and whether to estimate clock offsets.
+        request: Run folders of the walks, and whether to estimate clock offsets.
         calibration: Options with the folder of the finished calibration, into which `walks/` is
             written, and seed.
         watcher: Receives progress.

@@ -83,7 +83,7 @@ THESIS_LOADS: Final = (2.13, 6.63, 8.13, 12.75)
 
 @sheet.styled
 def slip_law(curve: SlipCurve, *, title: str, simulated: bool) -> Figure:
-    """Draw traction over slip at four loads, and over slip and load (Fig. 4-14 to 4-16).
+    """Draw traction over slip at two to four loads, and over slip and load (Fig. 4-14 to 4-16).
 
     Args:
         curve: The slip curve.
@@ -92,7 +92,8 @@ def slip_law(curve: SlipCurve, *, title: str, simulated: bool) -> Figure:
 
     Returns:
         The figure: the loads are those of the thesis that were tested for this curve, or if these
-        are fewer than two, four from the least to the largest tested one. Dots are the peaks.
+        are fewer than two, four from the least to the largest tested one. Dots are at the largest
+        forward force.
     """
     loads = _loads(curve)
     figure = sheet.new_figure(title, simulated, width=10.0, height=4.4)

@@ -184,8 +184,9 @@ def _names(key: str, stem: str) -> bool:
 def caption_of(stem: str, *, stage: str) -> str:
     """Return the caption of a picture, from its file name and the stage that drew it.
 
-    In a validation it is that of the key with a leading dot that ends the name, by default
-    `.errors`; else that of the name in `CAPTIONS`, by default the name with spaces.
+    In a validation it is that of the key in `CAPTIONS` with a leading dot with which the name ends,
+    else that of `.errors`. In other stages it is that of stage and name, else that of the name,
+    else the name itself with spaces.
 
     Args:
         stem: File name of the picture without suffix.

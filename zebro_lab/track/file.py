@@ -107,7 +107,8 @@ def track_of_table(table: RawTable) -> TrackFile:
 def _joint(table: RawTable, poses: Poses) -> tuple[JointCovariance, tuple[str, ...]]:
     """Return the joint covariance of all poses, and notes.
 
-    It is read from the file beside a `track.csv` with yaw; without one, poses are independent.
+    It is read from the file beside a `track.csv` with yaw; without that file, errors of different
+    poses are independent.
     """
     covariance = _covariance(table)
     if table.path.name == TRACK_CSV and poses.has_yaw:

@@ -63,7 +63,13 @@ def validate_pair(request: ValidateRequest, watcher: Watcher) -> JudgedPair:
 
 
 def _read(file: Path, request: ValidateRequest, which: int) -> Trajectory:
-    """Read one of the files, with the source that a `columns.toml` has, whatever its layout."""
+    """Read a trajectory; a source stated in its `columns.toml` applies to files of any layout.
+
+    Args:
+        file: The file.
+        request: How files are read.
+        which: 0 for the reference, 1 for the estimate.
+    """
     mapping, topic = read_mapped_columns(TRACK, file, request.columns, MAPPED_UNITS, alone=True)
     trajectory = read_trajectory(
         file, request.trajectory, mapping=mapping, which=which,

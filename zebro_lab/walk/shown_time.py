@@ -16,8 +16,9 @@ _AFTER = 0.1  # s of standing that are shown after the last step
 def leg_turns(path: WalkPath) -> Array:
     """Compute how far the legs have turned, from the first sample on, shape (n,) [turns].
 
-    The mean over the legs, each in its own direction, so that of a robot that turns on the spot
-    both sides count; it never falls.
+    This is the mean over the legs, each counted positive in the direction in which it turned from
+    start to end, so that both sides count when the robot turns on the spot. A running maximum keeps
+    it from falling.
 
     Args:
         path: The walk.

@@ -71,7 +71,7 @@ def read_annotations(file: Path) -> Annotations:
 
 
 def _templates(table: SettingsTable) -> tuple[MarkedTop, ...]:
-    """Read `[template]`, or several `[[template]]`, each of another photograph."""
+    """Read `[template]`, or several `[[template]]`; raise if two are of one photograph."""
     if "template" not in table:
         return ()
     found = table.value("template", [])

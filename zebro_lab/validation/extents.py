@@ -27,7 +27,7 @@ def unit_warning(
 
     Args:
         reference: Positions, shape (n, d) [m], and their name for the warning.
-        estimate: The same of positions at the same times.
+        estimate: The same for the other path, at the same times.
         near: Largest relative difference of the ratio of extents from a factor of `_LARGE` or more.
             For smaller factors the limit is `_CLOSE`, or `near` if that is less [-].
     """

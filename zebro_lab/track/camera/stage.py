@@ -177,8 +177,6 @@ def _why_none(request: CameraRequest, left_out: dict[str, str]) -> str:
 def _other_count(board: Board, paths: Sequence[Path], found: int) -> str | None:
     """Return an error message if the photographs show a checkerboard of slightly another size.
 
-
-
     Its columns, its rows or both differ by one. There is a message only if it is seen in more of
     the first `_TRIED` photographs than `board` was in all of them; else None is returned.
 

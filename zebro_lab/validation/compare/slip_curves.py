@@ -201,9 +201,9 @@ def _quantities(
 ) -> Iterator[Quantity]:
     """Yield peak slip, peak force and slope at zero slip of both curves at a load, if known.
 
-    Peaks are those of the side of zero slip that was tested farther. A feature is left out if a
-    draw of it is not finite, the peak slip also if all draws of a curve peak at the smallest slip,
-    as does a curve that jumps at zero slip.
+    Peaks are those of the side of zero slip that was tested farther; an unknown force counts as 0.
+    A feature is left out if a draw of it is not finite, the peak slip also if all draws of a curve
+    peak at the smallest slip, as does a curve that jumps at zero slip.
 
     Args:
         load: Load [N].

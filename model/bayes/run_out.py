@@ -181,7 +181,7 @@ def _waves(samples: SlipSamples, slip: Array) -> Array:
 
 
 def _length(samples: SlipSamples, angles: DiscAngles) -> int:
-    """Return how many samples a mean may have, so that no disc turns by more than `TURN` in it."""
+    """Return the samples of a mean in which a disc, at its 90 % quantile of speed, turns `TURN`."""
     inside = np.diff(samples.run) == 0
     fastest = 0.0
     for _, angle, _ in _recorded(angles):
@@ -331,7 +331,7 @@ def _with_prior(columns: Array, run: NDArray[np.intp], prior_sd: Array, m: int) 
 
 
 def _fit_of(products: Array, known: Array, prior: Array, used: NDArray[np.bool_]) -> Array:
-    """Compute the log density of runs by coefficients from others, up to a constant, (runs,)."""
+    """Compute log densities (runs,) by runs' Gram matrices, fitted to the sum `known` of others."""
     mean = np.zeros(len(used))
     inside = np.ix_(used, used)
     mean[used] = np.linalg.solve((prior + known[:-1, :-1])[inside], known[:-1, -1][used])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The contact triangle: static stability, and the leg that lifts when the robot is unstable."""
+"""The contact triangle (support polygon of three legs), and static stability of a point in it."""
 
 import numpy as np
 from numba.extending import register_jitable
@@ -36,7 +36,8 @@ def side_products(point: Array, triangle: Array) -> Array:
 def depth_in_triangle(point: Array, triangle: Array) -> float:
     """Compute the signed distance from a point in a triangle to the triangle's nearest side [m].
 
-    Outside it is negative, to the line of the side that the point lies furthest beyond.
+    Of the centre of mass it is the static stability margin. Outside it is negative, to the line of
+    the side that the point lies furthest beyond.
 
     Args:
         point: The point seen from above, shape (2,) [m].

@@ -34,11 +34,11 @@ class LegMotion:
     Attributes:
         turns: Rotation of each leg, there and back, shape (6,) [turns].
         direction: 1 or -1 where a leg's angle grew or fell most of the time, else 0, shape (6,).
-        centre: Mean direction of each leg angle, which is that of the middle of its stance, in
+        centre: Circular mean of each leg angle, which is that of the middle of its stance, in
             (-pi, pi], shape (6,) [rad].
-        weight: Length of the mean of exp(i theta), from 0 for a leg that turns evenly to 1 for one
-            that stands still, shape (6,) [-]. 0 where all legs step at once, since then their mean
-            rotation says nothing of their stance.
+        weight: Mean resultant length, that of the mean of exp(i theta), from 0 for a leg that turns
+            evenly to 1 for one that stands still, shape (6,) [-]. 0 where all legs step at once,
+            since then their mean rotation says nothing of their stance.
         phase: Share of its cycle by which each leg is ahead of leg 1, in [0, 1), shape (6,)
             [cycles]. Independent of the zero and of the sign of its angle where `weight` is clear.
         coherence: 1 where the differences of phase are constant, 1/6 where they are arbitrary [-].

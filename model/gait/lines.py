@@ -59,7 +59,7 @@ class Passing(NamedTuple):
 
 @compiled
 def split(samples: Samples, half: float) -> NDArray[np.intp]:
-    """Split samples into the fewest successive groups that a straight line passes.
+    """Split samples greedily into the fewest successive groups that a straight line passes.
 
     A line passes a sample if it lies within `half` of the counted angle. Its speed is at most
     `FASTEST` either way. Each group is as long as it can be, from the first one on.
@@ -139,7 +139,7 @@ def _range(samples, begin, end, half, m):
 
 @compiled
 def closest(samples: Samples, begin: int, end: int) -> tuple[float, float]:
-    """Find the line that is closest to a group of samples: its largest distance is the least.
+    """Find the minimax (Chebyshev) line of a group of samples: its largest distance is the least.
 
     Args:
         samples: The samples.
@@ -215,7 +215,7 @@ def _last(samples, begin, end, half, inside, outside):
 
 @compiled
 def middle(lines: Passing) -> Lines:
-    """Return the mean of all lines that pass each group, evenly in speed and angle."""
+    """Average all lines that pass each group, distributed evenly over speed and angle."""
     k = len(lines.x)
     found = Lines(lines.x, np.empty(k), np.empty(k))
     for i in range(k):

@@ -149,7 +149,7 @@ class _Cycle:
         return last if self.stopped is None else max(last, self.stopped[0])
 
     def knots(self, leg: int) -> list[tuple[float, float]]:
-        """Return times [s] and angles [rad] between which a leg turns at constant speed."""
+        """Return the knots of a leg's piecewise linear angle: times [s] and angles [rad]."""
         found = []
         if self.handed is not None:
             at, held, pause = self.handed
@@ -297,7 +297,7 @@ class ProgramLegs:
         return self.cycles[first:]
 
     def _knots(self, cycles: tuple[_Cycle, ...], leg: int) -> tuple[Array, Array]:
-        """Return times [s] and angles [rad] between which a leg turns at constant speed."""
+        """Return the knots of a leg's piecewise linear angle in cycles: times [s], angles [rad]."""
         last = self._angles_at_end()[leg]
         found = [knot for cycle in cycles for knot in cycle.knots(leg)]
         times, angles = zip(*found, (self._down, last), (self.end, last), strict=True)
@@ -316,7 +316,10 @@ class ProgramLegs:
     def _events(
         gait: CycleGait, touchdown: Array, liftoff: Array, *, all_down: float = -np.inf
     ) -> tuple[Array, Array]:
-        """Return lift-offs and touchdowns of the cycle after one with the given events [s]."""
+        """Return lift-offs and touchdowns, (6,) each, of the cycle after one with given events [s].
+
+        They follow by the gait's max-plus system; no leg lifts off before the time `all_down`.
+        """
         n = N_LEGS
         before = otimes(gait.system.A1, np.concatenate([touchdown, liftoff]))
         before[n:] = oplus(before[n:], all_down)

@@ -84,7 +84,7 @@ def consistency(draws: Array, observed: Array) -> tuple[Consistency, ...]:
 
 
 def nees(points: Array, draws: Array) -> Array:
-    r"""Compute the normalised error squared of points against an ensemble, over its dimension k.
+    r"""Compute the normalised estimation error squared (NEES) of points, over its dimension k.
 
     Args:
         points: Points (x, y and, if k = 3, yaw) of p paths at n times, shape (p, n, k).

@@ -68,7 +68,7 @@ class PathErrors:
             (`model.travel`) [m].
         length_ratio: Predicted over tracked length, both by the track's chord; NaN if the track has
             no length [-].
-        ate: Root mean square distance, unaligned [m].
+        ate: Absolute trajectory error: root mean square distance, unaligned [m].
         x: Root mean square error of x [m].
         y: Root mean square error of y [m].
         along: Root mean square error along the track [m].

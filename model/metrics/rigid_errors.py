@@ -59,7 +59,7 @@ class RigidErrors:
         poses: Number of poses.
         length: Length of the reference [m].
         scale: Factor by which the estimate was multiplied before all else [-].
-        ate: Distances of the poses, unaligned.
+        ate: Absolute trajectory error: distances of the poses, unaligned.
         aligned: Distances after alignment over SE(d) (Umeyama).
         alignment: The alignment, whose scale is 1.
         rotation: Root mean square angle between the rotations, unaligned; NaN without them [rad].

@@ -101,6 +101,8 @@ def two_arcs_to(x: float, y: float, heading: float) -> tuple[Arc, Arc] | None:
 def arc_straight_arc_to(x: float, y: float, heading: float, radius: float) -> tuple[Arc, Arc, Arc]:
     """Return the shortest arc, straight and arc, of one radius, that lead to a pose.
 
+    These are the Dubins paths of the kind arc-straight-arc; those of three arcs are not tried.
+
     Args:
         x: Distance ahead [m].
         y: Distance to the left [m].

@@ -122,6 +122,7 @@ class _Negated(ConcreteTemplate):
 
 @lower_builtin(operator.neg, lanes)
 def _negate(context, builder, sig, args):
+    """Emit the change of sign of all lanes."""
     return builder.fneg(args[0])
 
 

@@ -189,7 +189,7 @@ def _touchdowns(stance: Stance, contact: Contact) -> NDArray[np.bool_]:
 
 
 def _stances(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> list[Stance]:
-    """Stand on each triple of legs whose feet span a triangle seen from above."""
+    """Stand on each triple of legs; leave out those whose feet lie on one line seen from above."""
     stances = []
     for three in triples:
         with suppress(DomainError):  # the feet lie on one line

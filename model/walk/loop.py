@@ -111,7 +111,7 @@ def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
         energy[:] = 0.0
         if fine_left == 0 or parts == 1:
             one_step(body, table, ground, contacts, state, work, theta[step + 1], speed, dt)
-            if parts > 1 and _contacts_changed(work.load, loaded):
+            if parts > 1 and _contacts_changed(work.load, loaded):  # undo it, and repeat it finely
                 copy_state(before, state)
                 _copy(loaded, work.load)
                 _copy(gain, work.gain)

@@ -151,7 +151,11 @@ class WalkFit:
         return self._of([i for i in range(len(self._names)) if i != walk])
 
     def _of(self, keep: Sequence[int]) -> WalkPosterior:
-        """Compute the posterior of the walks with the indices `keep`, from the draws of the fit."""
+        """Compute the posterior of the walks with the indices `keep` by importance weights.
+
+        The draws of the fit stay; their weights are the density given these walks alone over the
+        proposal density, with sum one.
+        """
         density, drawn = self._density, self._drawn
         terms = self._terms.only(keep)
         log_density = density.log_prior(drawn.z, drawn.case) + terms.log_likelihood()

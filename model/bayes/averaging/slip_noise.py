@@ -100,7 +100,11 @@ def shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array:
 
 
 def own_share(estimates: Array, sampling_variance: Array, typical: float) -> Array:
-    """Compute the weight of each run's own estimate in `shrink`, shape (n_runs,) [-]."""
+    """Compute the weight of each run's own estimate in `shrink`, shape (n_runs,) [-].
+
+    It is 1 - sampling variance over variance between runs (from the median absolute deviation), at
+    least 0; all 0 where more than half of the estimates are typical.
+    """
     scatter = (1.4826 * np.median(np.abs(estimates - typical))) ** 2
     if scatter == 0:
         return np.zeros_like(estimates)

@@ -174,7 +174,10 @@ def _swing(fit: Linearised, samples: SlipSamples) -> list[Check]:
 
 
 def _long_enough(samples: SlipSamples, correlation: float | None) -> list[Check]:
-    """Check that runs hold several correlation times of the noise; none where it is not known."""
+    """Check that the median run holds `MEMORIES` correlation times of the noise.
+
+    Not testable in shorter runs, or of under `FEWEST_SAMPLES`; no check without `correlation`.
+    """
     if correlation is None:
         return []
     length = float(np.median([part.stop - part.start for part in samples.slices()]))

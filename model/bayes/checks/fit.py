@@ -131,14 +131,20 @@ def whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
 
 
 def _whiteness_advice(residuals: Residuals, blocks: SlipBlocks) -> Advice:
-    """Choose between another law and shorter runs: drift neither alternates nor repeats by slip."""
+    """Choose advice on correlated residuals: another law, or shorter runs if forces drift.
+
+    Drift makes no negative lag-1 correlation, and no misfit that runs share at a slip and load.
+    """
     if residuals.lag_one < 0 or residuals.misfit_p < MISFIT_P:
         return law_advice(blocks)
     return ZeroBeforeEach("forces drift within runs, so that intervals are too narrow")
 
 
 def law_advice(blocks: SlipBlocks) -> TryLaws:
-    """Advise another law; slips of both signs, beyond noise about zero, may need one each."""
+    """Advise to try other laws, and to tell driving from braking if slips have both signs.
+
+    Both signs: the smaller side reaches more than a tenth of the largest absolute slip.
+    """
     smaller = min(blocks.slip.max(), -blocks.slip.min())
     return TryLaws(
         "forces differ from the curve in the same way in all runs",

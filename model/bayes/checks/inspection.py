@@ -159,7 +159,10 @@ def _suspected(found: list[Found]) -> tuple[Found, ...]:
 
 
 def _explained(fit: Linearised, suspected: tuple[Found, ...]) -> Array:
-    """Return what the best term explains beside the fit where it is beyond chance, (n,) [N]."""
+    """Return the force that the best term explains beside the fit, shape (n,) [N].
+
+    Zero without a term whose p-value is below `TERM_P`.
+    """
     if suspected and suspected[0].term.p < TERM_P:
         best = suspected[0]
         force = {**ZERO, **SIDES, **TIME, **LOAD}[best.name].force(fit)

@@ -172,7 +172,10 @@ class _Ridge:
         return s, height
 
     def _step(self, v: Array, s: Array) -> tuple[Array, Array]:
-        """Make one damped Newton step of each point's narrow coordinates, as `settle`."""
+        """Make one damped Newton step of each point's narrow coordinates, as `settle`.
+
+        These are in standard deviations at the mode, so that the gradient is the Newton step.
+        """
         rows, n, step = np.arange(len(v)), s.shape[1], 1e-3
         differences = step * np.concatenate([np.eye(n), -np.eye(n)])
         ahead, behind = np.split(self.density(v, s[:, None] + differences), 2, axis=1)

@@ -212,6 +212,7 @@ def rig_on_bus(
     with SimulatedLoadCell(rig, profile=profiles[1], faults=faults, rng=rng) as cell:
 
         def tick(now: float) -> None:
+            """Poll drives and load cell, which simulates the rig up to a time."""
             drives.poll(now)
             cell.poll(now)
 

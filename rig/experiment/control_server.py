@@ -63,9 +63,12 @@ class ControlServer:
         answer = self.answer
 
         class Handler(socketserver.StreamRequestHandler):
+            """Connection of one client: answers line by line until it closes or is silent."""
+
             timeout = IDLE_TIMEOUT
 
             def handle(self) -> None:
+                """Answer the client's lines; an answer that cannot be sent ends the connection."""
                 with contextlib.suppress(OSError):  # disconnected, or silent for too long
                     while line := self.rfile.readline(LONGEST_LINE):
                         reply = answer(line.decode("utf-8", "replace"))
@@ -74,6 +77,8 @@ class ControlServer:
         control = self._control
 
         class Server(socketserver.ThreadingTCPServer):
+            """Server whose connections end with the program, each in a thread of its own."""
+
             daemon_threads = True
             block_on_close = False
 

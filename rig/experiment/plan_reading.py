@@ -111,6 +111,7 @@ def _settle(table: TomlTable) -> SettleCriterion:
 
 
 def _accept(table: TomlTable) -> Acceptance:
+    """Read the largest deviations of an accepted point, and the number of attempts at one."""
     return Acceptance(
         slip=table.positive("slip"),
         slip_drift=table.positive("slip_drift"),
@@ -120,6 +121,7 @@ def _accept(table: TomlTable) -> Acceptance:
 
 
 def _controls(table: TomlTable) -> Controls:
+    """Read how often zeros and check points are measured."""
     return Controls(
         tare_every=table.whole("tare_every", 0, most=MOST_POINTS),
         tare_duration=table.positive("tare_duration", 1.0),

@@ -203,6 +203,7 @@ class _Run:
         self._show(RigState.HOLDING, why)
 
         def released(_: Batch) -> bool:
+            """Return whether neither a stop nor a pause is pending any more."""
             return self._control.stop.pending is None and not self._control.paused
 
         if not self._acquire.until(released, self._plan.limits.hold):
@@ -253,6 +254,7 @@ class _Run:
         zero = self._zero or UNLOADED
 
         def is_set(batch: Batch) -> bool:
+            """Show the mean normal force of a batch, and ask the setter whether it is reached."""
             if not len(batch.normal):
                 return False
             normal = float(batch.normal.mean()) - zero.normal

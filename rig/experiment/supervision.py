@@ -26,6 +26,7 @@ def supervised(control: Control) -> Iterator[None]:
     earlier = threading.excepthook
 
     def report(found: threading.ExceptHookArgs) -> None:
+        """Request a safe stop that names the thread and its exception."""
         name = "a thread" if found.thread is None else found.thread.name
         control.fail(name, found.exc_value or found.exc_type())
 
@@ -49,6 +50,7 @@ def start_thread(work: Callable[[], None], *, name: str, control: Control) -> th
     """
 
     def watched() -> None:
+        """Do the work, and request a safe stop where it raises."""
         try:
             work()
         except BaseException as error:  # noqa: BLE001, RUF100 - the run stops and reports it
@@ -84,10 +86,12 @@ def signal_stops(switch: StopSwitch) -> Iterator[None]:
     """
 
     def interrupt(_number: int, _frame: FrameType | None) -> None:
+        """Request the next harder stop, as Ctrl-C does."""
         category = next_stop(None if switch.pending is None else switch.pending.category)
         switch.request(category, "Ctrl-C")
 
     def end(number: int, _frame: FrameType | None) -> None:
+        """Request a safe stop that is named after the signal."""
         switch.request(StopCategory.SAFE, signal.Signals(number).name)
 
     handlers = {signal.SIGINT: interrupt}

@@ -153,6 +153,7 @@ class MemoryLink:
         return True
 
     def _poll(self) -> bytes:
+        """Pass the written bytes to the twin, and return those that it sends up to now."""
         received = bytes(self._outbox)
         self._outbox.clear()
         return self._twin.poll(self._clock.now(), received)

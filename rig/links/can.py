@@ -98,6 +98,7 @@ class CanLink:
             self._lock.release()
 
     def _disconnect(self) -> None:
+        """Close the bus, if it is open; keep its lock."""
         bus, self._bus = self._bus, None
         if bus is not None:
             with contextlib.suppress(
@@ -251,6 +252,7 @@ class CanLink:
             messages.append(message)
 
     def _connect(self) -> can.BusABC:
+        """Open the bus by its name, or return the one that was given open."""
         if isinstance(self._channel, can.BusABC):
             return self._channel
         interface, _, channel = self._channel.partition(":")

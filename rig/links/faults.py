@@ -85,6 +85,7 @@ class FaultyLine(Generic[FrameT]):
         return [frame] * (2 if self._happens(self._faults.duplicate) else 1) + held
 
     def _happens(self, probability: float) -> bool:
+        """Draw whether an error happens; a probability of 0 draws no number."""
         return probability > 0 and self._rng.random() < probability
 
 

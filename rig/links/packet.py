@@ -145,6 +145,7 @@ class TrailerFramer:
         self._aligned = False
 
     def _lose_alignment(self) -> None:
+        """Count a frame without its trailer as damaged; the next trailer must be found."""
         self.damaged += 1
         self._out_of_sync = True
         self._aligned = False

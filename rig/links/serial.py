@@ -119,6 +119,7 @@ class SerialLink:
         return port
 
     def _disconnect(self) -> None:
+        """Close the port, if it is open; keep its lock."""
         port, self._serial = self._serial, None
         if port is not None:
             port.close()

@@ -49,6 +49,7 @@ class Ticker:
         self._thread.join(JOIN_TIMEOUT)
 
     def _run(self) -> None:
+        """Call the function every `TICK` until the end, or until it raises."""
         try:
             while not self._done.wait(TICK):
                 self._tick(self._clock.now())
@@ -136,6 +137,7 @@ class _Socket:
         return received
 
     def _drop(self) -> None:
+        """Close the connection to the client, if there is one."""
         client, self._client = self._client, None
         if client is not None:
             client.close()

@@ -101,6 +101,7 @@ def decode_forces(profile: LoadCellProfile, samples: Sequence[Sample]) -> Forces
     counts = columns.counts.reshape(-1, 6)
 
     def newtons(axis: ForceAxis) -> Array:
+        """Convert the counts of a channel to a force with the sign of the conventions, (n,) [N]."""
         return counts[:, axis.index] / (axis.sign * profile.counts_per_force)
 
     return Forces(columns.host_time, newtons(profile.normal), newtons(profile.traction))

@@ -170,6 +170,7 @@ class DriveBus(LinkedStream[CanLink]):
                 axis.send_velocity()
 
     def _request_due_temperatures(self) -> None:
+        """Request both drives' temperatures where the interval has passed."""
         now = self._clock.now()
         if now >= self._temperatures_at:
             self._temperatures_at = now + TEMPERATURE_INTERVAL

@@ -205,6 +205,7 @@ def load_rig_profile(name: str) -> RigProfile:
 
 
 def _limits(table: TomlTable) -> Limits:
+    """Read the rig's limits; those of `FURTHER_LIMITS` are optional."""
     return Limits(
         speed=table.positive("speed"),
         normal_force=table.positive("normal_force"),
@@ -228,6 +229,7 @@ def _drives(table: TomlTable) -> DriveProfile:
 
 
 def _disc_drive(table: TomlTable) -> DiscDrive:
+    """Read node, gear and sign of one drive."""
     return DiscDrive(
         node=table.whole("node", most=HIGHEST_NODE),
         gear=table.positive("gear"),
@@ -256,6 +258,7 @@ def _load_cell(table: TomlTable) -> LoadCellProfile:
 
 
 def _axis(table: TomlTable) -> ForceAxis:
+    """Read the channel x, y or z of a force, and its sign."""
     return ForceAxis(AXES.index(table.choice("axis", AXES)), table.sign("sign"))
 
 

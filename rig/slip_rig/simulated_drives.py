@@ -127,6 +127,7 @@ class SimulatedDrives:
                 self._send(axis, Command.ENCODER_ESTIMATES, data)
 
     def _send(self, axis: _Axis, command: Command, data: bytes) -> None:
+        """Send a frame of an axis to the host."""
         arbitration_id = can_id(axis.place.node, command)
         self._bus.send(can.Message(arbitration_id=arbitration_id, data=data, is_extended_id=False))
 

@@ -128,6 +128,7 @@ class SimulatedLegs:
         return now - self._switched_on
 
     def _frame(self, number: int) -> Frame:
+        """Build a frame with the true leg angles at its time, rounded to counts."""
         time = number / self.profile.rate
         theta = self.angles(time)
         by_leg = [theta[leg - 1] for leg in sorted(self.profile.legs)]

@@ -91,10 +91,10 @@ class AnnotatedPose:
         return {ANNOTATION: moved, HEIGHT: by_mean[:, :, :1], TILT: by_mean[:, :, 1:]}
 
     def as_a_whole(self, yaw: float) -> dict[str, Array]:
-        """Compute how a pose found with the template errs, the template shifted and turned only.
+        """Differentiate a pose found with the template by the errors, the template moving rigidly.
 
-        For aligners that do not tell how they follow each point; size and foreshortening of the
-        template are left out.
+        For aligners that do not tell how they follow each point. A least-squares shift and turn
+        stand for the movement of the points; size and foreshortening are left out.
 
         Args:
             yaw: Heading of the robot where it was found [rad].

@@ -205,6 +205,7 @@ def match_turned(
                 break
             planar = pose_of_match(template, plane, int(row), int(column), yaw)
             peaks.append((float(match[row, column]), planar))
+            # The next peak lies elsewhere: at least half a plate away in x or y.
             match[max(row - 6, 0) : row + 7, max(column - 6, 0) : column + 7] = -1.0
     return _apart(peaks, most, template.plate.length)
 

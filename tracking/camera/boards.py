@@ -114,8 +114,11 @@ def _find_checkerboard(
 
 
 def _refinement_reach(grid: NDArray) -> int:
-    # Half the window of subpixel refinement: as wide as possible without a neighbour's edges,
-    # which 0.4 squares exclude under any perspective in which a board can be detected.
+    """Compute half the window of subpixel refinement for corners (rows, columns, 2) [px].
+
+    It is as wide as possible without a neighbour's edges, which 0.4 squares exclude under any
+    perspective in which a board can be detected.
+    """
     steps = [np.linalg.norm(np.diff(grid, axis=axis), axis=2).min() for axis in (0, 1)]
     return int(np.clip(0.4 * min(steps), 2, 11))
 

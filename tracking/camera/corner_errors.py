@@ -62,6 +62,8 @@ class CornerErrors:
 def corner_errors(boards: Sequence[FittedBoard]) -> CornerErrors:
     """Estimate the errors of corners, and the covariance of a lens that was fitted to them.
 
+    Of all `RATIOS` and `REACHES` those of greatest restricted likelihood are taken.
+
     Args:
         boards: The board in each photograph, for a lens and poses fitted by unweighted least
             squares.

@@ -117,10 +117,10 @@ class Adjustment:
         return found, factors
 
     def edges(self) -> "EdgeSpread":
-        """Compare spreads of the edges by the sizes in which the floor's markers appear.
+        """Compute the posterior of the edges' spread by the evidence (marginal likelihood) of each.
 
-        The prior is a half-Cauchy one of scale `EDGE_SCALE`: a few markers can tell a large spread
-        from a small one, hardly more.
+        The prior is a half-Cauchy one of scale `EDGE_SCALE`: by the sizes in which they appear, a
+        few markers can tell a large spread from a small one, hardly more.
         """
         prior = np.log(EDGE_SPREADS) - np.log1p((EDGE_SPREADS / EDGE_SCALE) ** 2)  # by log spread
         if not self.floor.markers:

@@ -169,12 +169,15 @@ def _polish(
     """Refine a camera pose by robust least squares; return it with covariance, RMS misfit [px]."""
 
     def pose_of(x: Array) -> CameraPose:
+        """Return the camera pose of the six unknowns, rotation vector and translation."""
         return CameraPose(x[:3], x[3:], start.covariance)
 
     def residual(x: Array) -> Array:
+        """Compute projected minus seen pixels, shape (2n,) [px]."""
         return (project(camera, pose_of(x), points) - pixels).ravel()
 
     def jacobian(x: Array) -> Array:
+        """Compute the derivative of `residual` by the unknowns, shape (2n, 6)."""
         return project_with_derivatives(camera, pose_of(x), points)[2].reshape(-1, 6)
 
     x0 = np.concatenate((start.rotation_vector, start.translation))

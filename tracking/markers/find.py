@@ -227,7 +227,7 @@ def _twice_as_large(grey: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _in_small(corners_px: ArrayLike) -> Array:
-    # Pixel centres: the middle of large pixels 2u and 2u + 1 is the small pixel u.
+    """Convert pixels of `_twice_as_large`: the middle of its pixels 2u and 2u + 1 is pixel u."""
     return (np.asarray(corners_px, dtype=float) + 0.5) / 2 - 0.5
 
 

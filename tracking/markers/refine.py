@@ -326,8 +326,10 @@ def _sides(corners: Array) -> Array:
 
 
 def _shortest_side(corners: Array) -> float:
+    """Return the length of a quadrilateral's shortest side."""
     return float(_sides(corners).min())
 
 
 def _longest_side(corners: Array) -> float:
+    """Return the length of a quadrilateral's longest side."""
     return float(_sides(corners).max())

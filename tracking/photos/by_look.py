@@ -140,7 +140,7 @@ def _click_notes(
 
 
 def missed_too_far(pose: AnnotatedPose, missed: Array, sd_px: float) -> bool:
-    """Return whether clicks on corners do not fit any pose of the top, with probability 1e-6.
+    """Return whether clicks fit no pose of the top, by a chi-squared test at probability 1e-6.
 
     Args:
         pose: Pose fitted to the clicks.

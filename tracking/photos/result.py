@@ -105,6 +105,7 @@ def finish(
     shared = shared_errors(scene, seen)
     for photo, annotated in (annotations or {}).items():
         shared = shared.also(annotation_name(photo), annotated.covariance)
+    # `again` has further poses of photographs: not of those whose pose a correction changed.
     unchanged = {id(each) for each in kept} & {id(each) for each in observations}
     same = {each.photo for each in observations if id(each) in unchanged}
     again = [each for each in again if each.photo in same]

@@ -168,7 +168,13 @@ def _exclude_runs(advice: ExcludeRuns) -> str:
 
 
 def _plan(what: str, tables: dict[str, dict[str, str]], fit: str) -> str:
-    """Format lines of a plan by table and key, and the commands that run and fit it."""
+    """Format lines of a plan, and the commands that run and fit it, as text of several lines.
+
+    Args:
+        what: What to do, and why.
+        tables: Values in TOML, by table and key of the plan.
+        fit: What to do with the data.
+    """
     heads = (f"[{table}]\n" + "\n".join(f"{key} = {value}" for key, value in keys.items())
              for table, keys in tables.items())  # fmt: skip
     return (

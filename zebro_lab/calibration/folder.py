@@ -255,7 +255,10 @@ def _law_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def _run_out_content(calibration: "Calibration") -> dict[str, Any]:
-    """Return the run-out of the discs whose angles are recorded; nothing without."""
+    """Return the table `run_out` for discs whose angles are recorded; nothing without.
+
+    It holds the cosine and sine coefficients of each radius, once and twice a turn [m].
+    """
     found = calibration.run_out
     if found is None:
         return {}

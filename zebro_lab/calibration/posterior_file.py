@@ -72,6 +72,7 @@ def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Gener
     if posterior is not None and posterior.is_file():
         drawn = _posterior(posterior, curve)
         return drawn[rng.choice(len(drawn), size=n, replace=n > len(drawn))]
+    # by eigenvalues, since the covariance is singular where a parameter is fixed
     return rng.multivariate_normal(curve.values, curve.covariance, size=n, method="eigh")
 
 

@@ -137,7 +137,10 @@ def _singles(
 
 
 def _require_new_data(earlier: EarlierCalibration, data: RigData) -> None:
-    """Raise `SettingsError` for data that the earlier calibration was fitted to as well."""
+    """Raise `SettingsError` for data that the earlier calibration was fitted to as well.
+
+    They are known by the SHA-256 of each file but column maps and other .toml files.
+    """
     tables = [file for file in data.files if file.suffix != ".toml"]
     twice = [file.name for file in tables if file_hash(file) in earlier.data]
     if twice:
@@ -151,7 +154,12 @@ def _require_new_data(earlier: EarlierCalibration, data: RigData) -> None:
 def _laws_of(
     earlier: EarlierCalibration, request: CalibrationRequest, data: RigData
 ) -> dict[str, SlipLaw]:
-    """Return the law of an earlier calibration; raise where the request or the data differ."""
+    """Return the law of an earlier calibration, the only one that its posterior is a prior of.
+
+    Raises:
+        SettingsError: The request names another law, load sensitivity or sides, or the data have
+            another slip definition.
+    """
     law, definition = earlier.curve.law, earlier.curve.definition
     apart = isinstance(law, SidedLaw)
     asked_default = request.law == MagicFormula.name

@@ -291,7 +291,7 @@ def _require_one_definition(parts: Sequence[RigPart]) -> None:
 
 
 def _require_informative(samples: SlipSamples, parts: Sequence[RigPart]) -> None:
-    """Raise `DataError` if samples are too few, or slip varies no more than by its noise."""
+    """Raise `DataError` if samples are too few, or slip is constant or varies by noise alone."""
     where = parts[0].path if len(parts) == 1 else None
     trials = all(part.columns.runs.each_row for part in parts)
     least = _LEAST_TRIALS if trials else _LEAST_SAMPLES

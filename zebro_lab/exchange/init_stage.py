@@ -83,7 +83,19 @@ def write_columns_template(
 
 
 def _require_free(target: Path, present: str, kind: str) -> None:
-    """Raise if the `columns.toml` that is present has no place for a section of a kind."""
+    """Raise if an existing `columns.toml` has no place for a section of a kind.
+
+    It has none if it is without sections, or has one of this kind.
+
+    Args:
+        target: The file.
+        present: Its text; "" where there is none, or where it is replaced.
+        kind: Kind of the table.
+
+    Raises:
+        AlreadyExists: There is no place.
+        SettingsError: The file is no TOML.
+    """
     if not present:
         return
     document = read_toml_document(target, advice=f"expected a {COLUMNS_FILE}")

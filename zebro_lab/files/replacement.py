@@ -160,7 +160,10 @@ def _is_folder(path: Path) -> bool:
 
 
 def _link(file: Path, target: Path) -> None:
-    """Hard-link a file, or copy it where links are not possible, unless the target is as new."""
+    """Hard-link a file to a target, or copy it where that is not possible.
+
+    A target that exists stays unless it is older than the file.
+    """
     if os.path.lexists(target):
         if target.lstat().st_mtime_ns >= file.lstat().st_mtime_ns:
             return

@@ -90,7 +90,10 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
 
 
 def _tripod(request: GaitRequest, leg_arc: float) -> NamedGait:
-    """Construct the tripod gait; touchdown is at 50 deg and a cycle takes 2 s by default."""
+    """Construct the tripod gait; touchdown is at 50 deg and a cycle takes 2 s by default.
+
+    Angles that are not given follow from the steering factor and the legs' arc [rad].
+    """
     inner_down, outer_down = _angles(request.touchdown_deg, "touchdown_deg", default=50.0)
     inner_up, outer_up = _angles(request.liftoff_deg, "liftoff_deg")
     if inner_down is None:
@@ -182,7 +185,11 @@ def _turn_name(name: str, request: GaitRequest, times: Mapping[str, float]) -> s
 
 
 def _tetrapod(request: GaitRequest, _: float) -> NamedGait:
-    """Construct the tetrapod of the thesis; with an option of `_SCHEDULED`, schedule its groups."""
+    """Construct the tetrapod of the thesis, by default from 45 to 135 deg in a cycle of 3 s.
+
+    If an option of `_SCHEDULED` is given, max-plus algebra schedules its groups of legs instead,
+    with two thirds of the cycle on the ground.
+    """
     touchdown, liftoff = _stance(request, 45.0, 135.0)  # 5-5-1 of the thesis
     cycle = _or(request.cycle, 3.0)
     if any(option in _SCHEDULED for option in request.given()):

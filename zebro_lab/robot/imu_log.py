@@ -96,7 +96,14 @@ def _not_read(table: RawTable, mapping: Columns, *, has_yaw: bool) -> Iterator[s
 
 
 def _orientation(table: RawTable, mapping: Columns) -> tuple[Array, bool]:
-    """Return quaternions, shape (n, 4), and whether the table has a yaw, which else is 0."""
+    """Return quaternions, shape (n, 4), w first, and whether the table has a yaw.
+
+    They are those of the table, else made of its roll, pitch and yaw by R = Rz Ry Rx; without a
+    column of yaw it is 0.
+
+    Raises:
+        DataError: There is neither a quaternion nor roll and pitch, or their values are impossible.
+    """
     if mapping.has(table, "qw"):
         columns = [_numbers(table, mapping, name) for name in _QUATERNION]
         quaternion = np.column_stack(columns)
@@ -114,7 +121,10 @@ def _orientation(table: RawTable, mapping: Columns) -> tuple[Array, bool]:
 
 
 def _require_radians(table: RawTable, mapping: Columns, tilt: Array) -> None:
-    """Raise if a body tilts far in radians whose unit nobody states: they may be degrees."""
+    """Raise `DataError` if roll or pitch exceed `LARGEST_TILT` in radians, but no unit is stated.
+
+    They may be degrees. `tilt` are both angles, shape (n, 2) [rad].
+    """
     largest = float(np.max(np.abs(tilt), initial=0.0))
     if largest <= LARGEST_TILT or mapping.states_unit(table, "roll"):
         return

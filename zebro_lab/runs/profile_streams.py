@@ -22,7 +22,7 @@ LEGS: Final = "legs"
 
 
 def profile_streams(file: Path) -> dict[str, RawStream]:
-    """Describe all streams of a profile, by the streams' names.
+    """Describe the counts and units of each stream of a profile for a log, by the stream's name.
 
     Args:
         file: Profile in a run folder; its name selects the kind: `rig`, `imu…`, else legs.
@@ -39,7 +39,7 @@ def profile_streams(file: Path) -> dict[str, RawStream]:
 
 
 def stored_streams(folder: Path, profiles: Iterable[str]) -> dict[str, RawStream]:
-    """Describe all streams of a run folder, by the streams' names.
+    """Describe the counts and units of each stream of a run for a log, by the stream's name.
 
     Args:
         folder: The run folder.

@@ -264,7 +264,11 @@ def _imu(profile: ImuProfile, t: Array, stream: SampleColumns) -> Curves:
 
 
 def _rig(profile: RigProfile, name: str, t: Array, stream: SampleColumns) -> Curves:
-    """Yield speeds of the discs [rad/s] or forces [N] of one stream of the slip rig."""
+    """Yield speeds of the discs [rad/s] or forces [N] of one stream of the slip rig.
+
+    The samples of the drives hold one disc each, told by their channel. Nothing is yielded for a
+    stream that the profile does not describe.
+    """
     if name == "drives" and profile.drives is not None:
         for disc, drive in (("leg", profile.drives.leg), ("ground", profile.drives.ground)):
             own = stream.channel == drive.node

@@ -63,7 +63,11 @@ def read_excel_file(path: Path, *, sheet: str | None = None) -> RawTable:
 
 
 def _filled_sheet(path: Path, sheets: Mapping[str, Cells], wanted: str | None) -> tuple[str, Cells]:
-    """Return name and cells of the sheet that is wanted, or else of the only one with cells."""
+    """Return name and cells of the sheet that is wanted, or else of the only one with cells.
+
+    Raises:
+        DataError: There is no such sheet, it is empty, or several have cells and none is wanted.
+    """
     if wanted is not None and wanted not in sheets:
         raise DataError(f"has no sheet '{wanted}'; it has {_listed(sheets)}", file=path)
     filled = {name: rows for name, rows in sheets.items() if rows and wanted in (None, name)}
@@ -130,7 +134,15 @@ def _header(path: Path, name: str, cells: Cells) -> Header:
 
 
 def _require_values(path: Path, name: str, cells: Cells, formulas: Cells, first: int) -> None:
-    """Raise if an empty cell has a formula: its value was never computed and stored."""
+    """Raise `DataError` if an empty cell has a formula: its value was never computed and stored.
+
+    Args:
+        path: The workbook.
+        name: Name of the sheet.
+        cells: Rows of values.
+        formulas: The same cells with their formulas.
+        first: Number of the first of these rows in the sheet.
+    """
     for i, (row, found) in enumerate(zip(formulas, cells, strict=False)):
         for j, (formula, value) in enumerate(zip(row, found, strict=False)):
             if value is None and formula.value is not None:

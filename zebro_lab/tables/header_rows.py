@@ -214,7 +214,16 @@ def _is_full(row: Row, width: int) -> bool:
 def _names(block: list[Row], above: list[Row], *, has_units: bool) -> tuple[list[str], list[Row]]:
     """Return the names of columns, from the lowest row of the header; and the rows above it.
 
-    Where a name occurs twice in it, the names of groups above are put before it.
+    Where a name occurs twice in it, the names of groups above are put before it, row by row, until
+    the names differ; if they never do, they stay as they are.
+
+    Args:
+        block: Full rows directly above the data, without units, at least one.
+        above: Rows above these, such as titles.
+        has_units: Whether there is a row of units.
+
+    Raises:
+        NoHeader: The two lowest rows may both be names, and no units tell which ones are.
     """
     names = [cell.strip() for cell in block[-1]]
     if _distinct(names):

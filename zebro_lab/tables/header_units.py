@@ -100,6 +100,8 @@ def suffix_in_header(header: str) -> tuple[str, str] | None:
 def suffix_unit(header: str, si_unit: str) -> str | None:
     """Return the unit at the end of a header, as in `FT_mN`; None without one, or if it is a name.
 
+    A unit of another quantity is returned too, to be reported, unless the ending is also a name.
+
     Args:
         header: The header.
         si_unit: SI unit of what the column is used for: `omega_g` is no acceleration.

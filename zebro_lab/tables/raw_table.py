@@ -126,8 +126,8 @@ class RawTable:
     def numbers(self, name: str) -> Array:
         """Return a column as numbers in the file's unit, NaN for empty cells, shape (n,).
 
-        A decimal comma is understood if no cell has a point. Thousands
-        separators are not: of 1,234 and 1.234 the decimal sign must be known from other numbers.
+        A decimal comma is understood if no cell has a point. Thousands separators are not: of 1,234
+        and 1.234 the decimal sign must be known from `decimal` or the column's other numbers.
 
         Raises:
             DataError: The column is missing, ambiguous or of dates, or a cell is not a number.

@@ -153,7 +153,10 @@ def _without_comments(lines: Sequence[Line]) -> tuple[list[Line], list[Line]]:
 
 
 def _candidate(separator: str, body: Sequence[Line], comments: Sequence[Line]) -> _Candidate | None:
-    """Split lines at a separator and find data and header; None where no row has a number."""
+    """Split lines at a separator and find data and header; None where no row has a number.
+
+    If the first line is data, the header is looked for in the comments above it.
+    """
     rows = [split_line(line, separator) for _, line in body]
     data = data_rows(rows)
     if data is None:
@@ -180,7 +183,8 @@ def _comment_cells(line: str, separator: str) -> list[str]:
 def _words(line: str, width: int) -> list[str]:
     """Split a line of names at blanks, but keep names and units of several words together.
 
-    They are known by wider gaps between names, or by what they are: `Time [s]`, `deg C`.
+    They are known by wider gaps between names, or by what they are: `Time [s]`, `deg C`. If neither
+    gives `width` names, the number of columns of the data, all words are returned.
     """
     words = split_line(line, BLANKS)
     if len(words) <= width:
@@ -260,7 +264,14 @@ def _is_transposed(rows: Sequence[Sequence[str]]) -> bool:
 
 
 def _layout(best: _Candidate, header: Header, data: DataRows, body: Sequence[Line]) -> TextLayout:
-    """Return the layout of a candidate with a header, and check that its rows fit the header."""
+    """Return the layout of a candidate with a header, and check that its rows fit the header.
+
+    Args:
+        best: The candidate.
+        header: Its header, or one that was made for bare numbers.
+        data: Rows with data.
+        body: Number and text of each line, from the header on; one for each row of `best`.
+    """
     rows = best.rows[data.first : data.stop]
     widest = max(range(len(rows)), key=lambda i: len(rows[i]))
     cells = [cell for row in rows for cell in row]

@@ -191,7 +191,10 @@ def progress_bar(console: Console | None = None, *, quiet: bool = False) -> Iter
 def _display(
     console: Console, stack: ExitStack, *, quiet: bool
 ) -> tuple[ProgressDisplay, Callable[[], object]]:
-    """Return a display for a console, and what acknowledges a requested stop there."""
+    """Return a display for a console, and what tells there that a requested stop is followed.
+
+    Bars are drawn on a terminal, until `stack` is closed; elsewhere lines are printed.
+    """
     if quiet:
         return _Silence(), lambda: None
     if not console.is_terminal:

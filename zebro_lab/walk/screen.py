@@ -169,7 +169,7 @@ def support_lines(support: Support) -> list[str]:
 
 
 def tilt_lines(summary: WalkSummary) -> list[str]:
-    """Return a warning if the body tilts farther than a body on its legs can; else nothing."""
+    """Return a warning if the body tilts by over `_STEEP`, which none does on its legs."""
     roll, pitch = np.degrees([summary.largest_roll, summary.largest_pitch])
     if max(roll, pitch) <= _STEEP:
         return []

@@ -77,7 +77,11 @@ class RestProof:
         )
 
     def _problem(self, disc: str) -> str:
-        """Return why standstill of a disc is not verified, as text; empty where it is verified."""
+        """Return why standstill of a disc is not verified, as text; empty where it is verified.
+
+        It is with `FEWEST` readings or more in the window, a mean speed up to the limit, and a root
+        mean square of the speed up to `SCATTER` times the limit.
+        """
         speeds = np.array([speed for _, speed in self._seen[disc]])
         if len(speeds) < FEWEST:
             return (

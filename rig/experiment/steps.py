@@ -131,7 +131,11 @@ def _points(plan: Plan) -> list[Point]:
 
 
 def _passes(plan: Plan, rng: np.random.Generator) -> list[tuple[tuple[float, ...], str]]:
-    """List the points of one pass at one load in order, each as (slips, direction)."""
+    """List the points of one pass at one load in order, each as (slips, direction).
+
+    Slips are as given, permuted by `rng` if shuffled, or ascending and then descending if up-down.
+    A sweep is one point with all slips, or two if up-down, and is not shuffled.
+    """
     grid = plan.points
     if grid.order == "up-down":
         up = tuple(sorted(grid.slips))

@@ -169,7 +169,11 @@ def load_imu_profile(name: str) -> ImuProfile:
 
 
 def _record(frame: TomlTable) -> Record:
-    """Read the counts of a record, `NAME` or `NAME:TYPE` each, and check that they suffice."""
+    """Read the counts of a record, `NAME` or `NAME:TYPE` each; `DEFAULT_RECORD` if none are given.
+
+    Names and types must be known, each name is there once at most but for `UNUSED`, and there must
+    be a whole quaternion, or roll and pitch.
+    """
     if "record" not in frame:
         return DEFAULT_RECORD
     pairs = tuple(text.partition(":") for text in frame.texts("record"))

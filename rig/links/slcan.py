@@ -111,7 +111,11 @@ class SlcanAdapter:
         return out
 
     def _execute(self, line: bytes) -> bytes:
-        """Execute one line from the host, without its carriage return, and return the answer."""
+        """Execute one line from the host, without its carriage return, and return the answer.
+
+        Frames are passed on, `O` and `L` open the channel and `C` closes it; settings of bit rate,
+        time stamps and filters are answered but have no effect.
+        """
         command = line[:1]
         if command in (b"t", b"T", b"r", b"R"):
             return self._pass_on(line)

@@ -184,7 +184,11 @@ class _Job:
         )
 
     def solve(self, state: Array, least_hope: float) -> Alignment | None:
-        """Fit pose and template scale by Gauss-Newton, with Huber's weights; None as `align`."""
+        """Fit pose and template scale from a pose (6,) by Gauss-Newton, with Huber's weights.
+
+        None where too little is visible (`_look`), or the correlation is below `least_hope` after
+        `_FIRST_LOOKS` steps.
+        """
         prior = self.prior
         sd = [np.inf, np.inf, prior.height_sd, prior.tilt_sd, prior.tilt_sd, np.inf, SCALE_SD]
         held = np.array(sd) ** -2.0

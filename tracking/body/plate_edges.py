@@ -180,7 +180,11 @@ def _outwards(side: Array, middle: Array) -> Array:
 def _measurement(
     outline: list[Array], middle: Array, edges: dict[int, _Edge]
 ) -> tuple[Array, Array]:
-    """Return how edges follow the corners, (2m, 8), and the covariance of their errors (2m, 2m)."""
+    """Return the derivative of the offsets of m edges by the corners, and their covariance.
+
+    The derivative has the shape (2m, 8), two offsets for each edge; the covariance (2m, 2m) is that
+    of the edges' errors, those in common of opposite sides included.
+    """
     by_corner, common = np.zeros((2 * len(edges), 8)), np.zeros((2 * len(edges), 2))
     noise = np.zeros((2 * len(edges), 2 * len(edges)))
     for row, (k, edge) in enumerate(edges.items()):
@@ -195,7 +199,17 @@ def _measurement(
 
 
 def _find_edge(pixels: NDArray[np.uint8], side: Array, normal: Array, reach: float) -> _Edge | None:
-    """Find the one clear edge along a side; None where there is none, or more than one."""
+    """Find the one clear edge along a side; None where there is none, or more than one.
+
+    The strongest step of the side's mean profile gives a first offset and the edge's colours; then
+    a line is fitted to the steps of segments along the side.
+
+    Args:
+        pixels: The photograph, BGR, shape (height, width, 3).
+        side: Points along the side of the outline, shape (points, 2) [px].
+        normal: Unit normals there, outwards, shape (points, 2).
+        reach: Largest distance of the edge from the side [px].
+    """
     inner = slice(round(_ENDS * len(side)), len(side) - round(_ENDS * len(side)))
     at, along = side[inner], np.linspace(-1.0, 1.0, len(side))[inner]
     unit = max(1.0, _length(side) / _UNIT)

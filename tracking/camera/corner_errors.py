@@ -78,7 +78,10 @@ def corner_errors(boards: Sequence[FittedBoard]) -> CornerErrors:
 
 
 def _likelihood(boards: Sequence[FittedBoard], reach: float) -> tuple[Array, Array]:
-    """Compute, for all `RATIOS`, the restricted log likelihood and its best noise² [px²]."""
+    """Compute, for all `RATIOS` at a reach [m], the restricted log likelihood and its best noise².
+
+    Noise² is the variance that maximises the likelihood at each ratio [px²]; shape (ratios,) each.
+    """
     rotated = [_in_modes(board, reach) for board in boards]
     free = sum(board.missed.size for board in boards) - 6 * len(boards)
     k = boards[0].by_lens.shape[2]

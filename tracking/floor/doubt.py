@@ -118,7 +118,10 @@ def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[SuspectValue]:
 
 
 def _of_prints(problem: Adjustment, plain: _Weighed) -> SuspectValue:
-    """Compare with an alternative in which the sides of all floor markers may be far off."""
+    """Compare with an alternative in which the sides of all floor markers may be far off.
+
+    Their standard deviations are `_FAR` times those stated; found is the mean relative change.
+    """
     loose: dict[int | str, Mark] = {
         m.marker_id: replace(m, side_sd=_FAR * m.side_sd) for m in problem.floor.markers
     }
@@ -134,7 +137,7 @@ def _of_prints(problem: Adjustment, plain: _Weighed) -> SuspectValue:
 
 
 def _of_lens(problem: Adjustment, plain: _Weighed) -> SuspectValue:
-    """Compare with an alternative in which the focal length may be far off."""
+    """Compare with an alternative in which the focal length may be off by `_LENS` of itself."""
     other = replace(problem, camera=_loose(problem.camera))
     start = replace(other.start(), floor=plain.found.floor, poses=plain.found.poses)
     fit = _weighed(other, start)

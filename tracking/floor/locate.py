@@ -194,7 +194,11 @@ def _polish(
 
 
 def _explain(camera: Camera, floor: FloorMap, view: FloorView, misfit: float) -> None:
-    """Raise `FloorError` for a pose that does not fit, and say whether a mirrored map would."""
+    """Raise `FloorError` for a pose that does not fit, and say whether the map is mirrored.
+
+    It is if the map with y reversed fits within `_MISFIT_PX` and either the camera is then above
+    the floor, or the misfit is below 0.3 of the given one [px].
+    """
     other, other_misfit = _best_pose(camera, floor.mirrored(), view)
     if other_misfit < min(0.3 * misfit, _MISFIT_PX) or (
         other.position[2] > 0 and other_misfit < _MISFIT_PX

@@ -82,7 +82,10 @@ def _refuse_large(capture: cv2.VideoCapture, name: str) -> None:
 
 
 def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Image]:
-    """Yield the frames that are at least `every` [s] apart; raise PhotoError if there is none."""
+    """Yield frames that are `every` apart, less `FRAME_TIME_SD`, or more [s].
+
+    Raises PhotoError if no frame can be decoded.
+    """
     last, number = -np.inf, -1
     while capture.grab():
         number += 1

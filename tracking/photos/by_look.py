@@ -160,7 +160,10 @@ def _again(
     templates: Mapping[str, tuple[BodyTemplate, AnnotatedPose]],
     observations: Sequence[PoseObservation],
 ) -> list[PoseObservation]:  # fmt: skip
-    """Align, in each annotated photograph, the templates of all others, from the pose found."""
+    """Align, in each annotated photograph, the templates of all others, from the pose found.
+
+    Kept are alignments whose correlation is above `_LIKE`. With one template there are none.
+    """
     files = {photo.name: photo.path for photo in photos}
     found = []
     for seen in observations if len(templates) > 1 else ():

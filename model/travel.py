@@ -83,8 +83,9 @@ def travel_chord(poses: Poses) -> float:
 def travelled(poses: Poses, *, chord: float | None = None) -> Array:
     """Compute the distance travelled up to each pose of one path, shape (n,) [m].
 
-    Between poses that count it is how far the pose has come along the line between them, and never
-    less than at the pose before.
+    A pose counts if it is a chord from the last that counted; lines join the poses that count.
+    Between them it is how far the pose has come along the line, and never less than at the pose
+    before.
 
     Args:
         poses: The path.
@@ -123,9 +124,10 @@ def has_travelled(poses: Poses) -> bool:
 def travel_direction(poses: Poses) -> Array:
     """Compute the direction of travel at each pose of one path, shape (n,) [rad].
 
-    It is the direction from the last pose before that counts to the next that counts; at the ends
-    one of the two is the pose itself. Where they are within `STANDING`, the last direction before
-    is repeated, or the first after; zero if the robot never moves.
+    A pose counts if it is a chord (`travel_chord`) from the last that counted. The direction is
+    that from the last pose before that counts to the next that counts; at the ends one of the two
+    is the pose itself. Where they are within `STANDING`, the last direction before is repeated, or
+    the first after; zero if the robot never moves.
     """
     if len(poses) < 2:
         return np.zeros(len(poses))

@@ -34,10 +34,11 @@ LOG_2PI = math.log(2 * math.pi)
 def block_table(blocks: SlipBlocks) -> Array:
     """Compute what the likelihood needs of each block, shape (n, 16).
 
-    Load and slip, the three columns of `SlipRule`, light and heavy load, their differences from the
-    load, the share of the heavy load, the variance of slip over that of the load that it follows,
-    the variance of load over that of slip at one load, slip over load, slip over radius error,
-    traction and the variance of slip's own error.
+    Columns, in the order of their names above: mean load and slip; standard deviation, first and
+    last index of the block's `SlipRule`; light and heavy load of its `LoadRule`, each less the mean
+    load, and the share of the heavy one; variance of slip over that of the load which it follows;
+    variance of load over that of slip at a given load; slope of slip over load; sensitivity of slip
+    to the ratio of radii; measured traction; variance of the slip's own error.
     """
     rule, slip, load = load_rule(blocks), blocks.slip, blocks.normal_force
     variance = np.maximum(blocks.slip_variance(), 1e-12)

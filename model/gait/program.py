@@ -205,8 +205,8 @@ class ProgramLegs:
 
         Where the gait goes on, the scheduler alone says who waits for whom. Else all legs are down
         before one lifts off, and until it does a leg turns towards its new lift-off angle, no
-        faster than in either gait: a leg that lifts off at once does so from where it is, to the
-        side on which it leaves the ground.
+        faster than on the ground in the faster of the two gaits: a leg that lifts off at once does
+        so from where it is, to the side on which it leaves the ground.
 
         Args:
             gait: Gait of the cycle.

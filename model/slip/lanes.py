@@ -32,7 +32,9 @@ LANES = 4
 """Number of lanes: as many float64 as a vector register of AVX2 holds."""
 
 
-_inline: Callable[..., Any] = intrinsic  # calls leave out its first argument, numba's context
+# An intrinsic returns its signature and the function that emits its LLVM instructions. Calls of it
+# leave out the first argument, numba's typing context.
+_inline: Callable[..., Any] = intrinsic
 
 _DOUBLE, _LONG = ir.DoubleType(), ir.IntType(64)
 _CONTRACT = ("contract",)

@@ -164,6 +164,8 @@ def solve_on_edges(c, slopes, total, most, loads):
 def normal_forces(balance, traction, total, most, loads):
     """Solve Eq. (4-22) for the normal forces of three legs by 60 Gauss-Newton rounds at most.
 
+    They sum to `total`, lie between 0 and `most`, and come as near to the wanted roll and pitch
+    accelerations as that allows, by least squares.
     A round that leaves the bounds, or whose system is singular, takes the best point on an edge.
 
     Args:

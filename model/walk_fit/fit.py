@@ -216,11 +216,12 @@ class WalkFit:
     ) -> tuple[Array, tuple[float, ...]]:
         """Maximise a case's posterior from several starts; return the mode and all walks' misfits.
 
-        Only the walks `keep` are fitted, with traction across the legs as along them. The mean is
-        not used. On a kink of the posterior the mean lies on the side on which the walk does not
-        change, and its walk differs from the draws' walks. On a kink an optimisation may also end
-        early, so the best of several is refined at the finer step. The mode is in the units of the
-        parameters; a misfit is the mean squared whitened residual [-].
+        Only the walks `keep` are fitted, with lateral traction equal to longitudinal. The mode is
+        taken, not the posterior mean: on a kink of the posterior the mean lies on the side on which
+        the walk does not change, and its walk differs from the draws' walks. On a kink an
+        optimisation may also end early, so the best of several is refined at the finer time step.
+        The mode is in the units of the parameters; a misfit is the mean squared whitened
+        residual [-].
         """
         density, which = self._density, self._density.cases[case]
         misfits = [density.misfits[w] for w in keep]

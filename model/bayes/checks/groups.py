@@ -58,8 +58,11 @@ class GroupResiduals:
 def group_residuals(fit: Linearised, *, outer: bool = False) -> GroupResiduals:
     r"""Compute mean residuals by load and side, and their joint chi-square.
 
-    With weights w of the samples of each group, the means are W'(y - f), their covariance is
-    :math:`W' L (1 - Q Q') L' W` with Q the basis of what the fit absorbs.
+    Groups are the blocks nearest to one load level and of one sign of slip. With measured and
+    predicted traction y and f, and columns of W that average a group's samples, the means are
+    W'(y - f). Their covariance is :math:`W' L (1 - Q Q') L' W`, with the Cholesky factor L of the
+    blocks' covariance and the basis Q of what the fit absorbs, which the chi-square also takes out
+    of the means.
 
     Args:
         fit: The linearised fit.

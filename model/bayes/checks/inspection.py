@@ -128,7 +128,10 @@ def _family(name: str, found: list[Found], untested: str) -> Check:
 
 
 def _hidden(name: str, found: Found, evidence: str) -> Check:
-    """Return the check of a term that could be there and do harm without being seen."""
+    """Return a check that cannot be made: a term of harmful size would not be seen.
+
+    The least that would be is `SEEN` of its standard deviations, which is more than `matters`.
+    """
     least = SEEN * found.term.sd
     why = (
         f"what differs by less than {2 * least:.0%} would not show beside the rolling resistance "

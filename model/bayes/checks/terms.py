@@ -216,7 +216,7 @@ TIME: Mapping[str, Suspect] = {
 
 
 def find(fit: Linearised, suspects: Mapping[str, Suspect]) -> list[Found]:
-    """Estimate the size of each suspect, the one that explains most first.
+    """Estimate the size of each suspect beside the fit, the one of the largest `gain` first.
 
     Args:
         fit: The linearised fit.

@@ -98,7 +98,9 @@ def adaptive_draws(
 ) -> WeightedCaseDraws:
     """Draw weighted samples of the posterior by adaptive importance sampling.
 
-    Rounds of draws are added until enough draws are effective, up to a number of rounds.
+    Rounds of draws are added until enough draws are effective, up to a number of rounds. After
+    `PATIENCE` rounds, while fewer than `ENOUGH` are effective, narrower proposals around some of
+    the draws are added to a round.
 
     Args:
         modes: Gaussian of each case, in the order of the cases' indices.

@@ -24,11 +24,11 @@ SECONDS: Final = 2.0
 ZERO_SECONDS: Final = 10.0
 """Time of a zero: noise that remembers 0.05 s leaves a tenth of itself in it [s]."""
 SHORT: Final = 0.5
-"""Time of a run that forces hardly drift in [s]."""
+"""Time of a run in which forces hardly drift [s]."""
 SHORT_ZERO: Final = 2.0
 """Time of the zero before each of these runs [s]."""
 PASSES: Final = 4
-"""Such runs of each slip ratio."""
+"""Number of these short runs at each slip ratio."""
 
 
 @singledispatch

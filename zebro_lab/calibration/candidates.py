@@ -17,7 +17,7 @@ from zebro_lab.files.errors import SettingsError
 
 ONE_CURVATURE: Final = "one curvature E at every load"
 FEWEST_BLOCKS: Final = 0.02
-"""Share of the blocks that slip drives, and brakes, from which there are two sides [-]."""
+"""Least share of blocks that drive, and of blocks that brake, for a fit of both sides [-]."""
 PEAK_WITH_LOAD: Final = "peak slip grows with load"
 
 

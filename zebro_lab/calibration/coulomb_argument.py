@@ -8,7 +8,7 @@ from zebro_lab.files.errors import SettingsError
 
 COULOMB: Final = "coulomb"
 MOST_FRICTION: Final = 2.0
-"""Largest coefficient of friction that is taken for meant [-]; rubber on dry rock has about 1.2."""
+"""Largest coefficient of friction that is believed [-]; rubber on dry rock has about 1.2."""
 
 
 def coulomb_numbers(text: str) -> tuple[float, ...] | None:

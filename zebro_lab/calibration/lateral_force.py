@@ -18,7 +18,7 @@ from zebro_lab.tables.rig_table import RigTable
 
 LATERAL = "lateral_force"
 MUCH = 0.1
-"""Mean lateral force over mean traction, both in size, from which on it is said [-]."""
+"""Ratio of mean lateral force to mean traction, both in size, from which a note warns of it [-]."""
 _SUMS = 6  # of a run: number, force, its square, force over load, |traction|, and rows in all
 
 

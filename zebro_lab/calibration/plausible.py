@@ -13,7 +13,7 @@ from zebro_lab.tables.slip_source import SlipColumn
 LARGEST_RADIUS: Final = 3.0
 """Largest radius of a disc [m]; drums of tyre test benches have up to 1.7 m."""
 LARGEST_SLIP: Final = 1.5
-"""Slip ratio computed from speeds that most rows keep within, even when braking hard [-]."""
+"""Size of slip from speeds that at least half of the rows keep within, even braking hard [-]."""
 FRICTION: Final = (0.01, 4.0)
 """Range of the 95 % quantile of traction over normal force [-]: ice has 0.02, racing tyres 2."""
 

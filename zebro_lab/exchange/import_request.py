@@ -23,7 +23,7 @@ LARGEST_SD: Final = 0.5
 LARGEST_SD_YAW: Final = 1.0
 """Largest standard deviation of tracked headings [rad]."""
 LAST: Final = datetime(2038, 1, 19, tzinfo=UTC)
-"""Before it a run starts and ends: the ROS stamps of a log hold seconds since 1970 in 32 bits."""
+"""Day before which a run must end: the ROS stamps of a log hold seconds since 1970 in 32 bits."""
 
 
 def _moment(text: str) -> datetime:

@@ -20,7 +20,7 @@ _MEANT: Final = {
 }  # fmt: skip
 """What a unit that measures another quantity probably means, by unit and SI unit."""
 _EPOCH: Final = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"))
-"""Units of seconds since 1970, by the least number that they give."""
+"""Units of times since 1970, by the least number that a time of our days has in them."""
 _CLOCKS: Final = {"millis": "ms", "micros": "us"}  # named by functions of Arduino
 _RATIO: Final = 1.5  # a slip ratio beyond is a percentage
 _RADIANS: Final = 90.0  # an angle beyond is probably in degrees

@@ -20,7 +20,7 @@ _NO_UNIT = {"", "-", "1", "–", "none", "ratio", "unitless"}  # how headers wri
 _MISREAD = {"Grad": "deg", "Grad/s": "deg/s", "U/min": "rpm", "Upm": "rpm", "RPM": "rpm"}
 """Spellings in which pint would see another unit: gigarad for the German degree."""
 _TURNS = re.compile(r"1?/[Mm]in|[Mm]in(?:\^|\*\*)?-1|[Mm]in⁻¹")
-"""Revolutions per minute as machines are rated in them, DIN 1301: of an angular speed only."""
+"""Spellings of revolutions per minute (DIN 1301), for angular speeds only."""
 _SPELLINGS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "sek": "s",
     "sekunde": "s", "sekunden": "s", "sek.": "s", "msec": "ms",
@@ -44,7 +44,7 @@ _BASES = (
 _POWER = r"(?:\^?-?[1-4]|[²³]|⁻[¹²]|\*\*-?[1-4])?"
 _UNIT_TEXT = re.compile(rf"(?:1|{_BASES}){_POWER}(?:[/*·. ](?:{_BASES}){_POWER})*")
 _SMALLER = {"m": ("cm", "mm"), "kg": ("g", "g"), "dimensionless": ("%", "%")}
-"""Units that a number beyond the usual may be meant in: up to ten times beyond, and farther."""
+"""Unit that a number above `usual` is probably in: if up to ten times as large, and if larger."""
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
 
 _SHOWN = {"rad": (180 / math.pi, "deg"), "rad/m": (180 / math.pi, "deg/m"), "-": (100.0, "%")}

@@ -28,7 +28,7 @@ _NORM_TOLERANCE: Final = 0.05  # of a quaternion's length; files round to a few 
 NEAR_G: Final = 0.15  # of a median specific force from 1, in multiples of g
 _MOST_NAMED: Final = 6  # columns that are not read
 LARGEST_TILT: Final = 1.0
-"""Largest roll or pitch whose unit nobody states [rad]: a walking body stays upright."""
+"""Largest roll or pitch that is believed without a unit [rad]: a walking body stays upright."""
 _ADVICE: Final = "delete such rows, or fill them"
 
 

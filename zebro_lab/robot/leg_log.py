@@ -18,7 +18,7 @@ from zebro_lab.tables.columns import COLUMNS_FILE, Columns
 from zebro_lab.tables.raw_table import RawTable
 
 WIDEST: Final = 5.0
-"""Step of time that is no gap yet [median steps]."""
+"""Longest step of time that is not a gap [median steps]."""
 LONGEST_BRIDGED: Final = 0.25
 """Longest gap that is bridged: in more time a leg may swing and come to rest unseen [s]."""
 _BESIDE: Final = 0.1  # s before and after a gap, of which the legs' speeds are taken

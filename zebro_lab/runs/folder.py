@@ -33,7 +33,7 @@ RECOVERED: Final = "recovered"
 """State of a run whose recorder was killed: its samples end where the log ends."""
 _BOARD_TOPIC: Final = raw_topic("board")
 STILL_GROWING: Final = 3.0
-"""Age below which a log's last change means that it is being recorded; written each second [s]."""
+"""A log that changed less than this ago is being recorded; recorders write each second [s]."""
 
 
 @dataclass(frozen=True)

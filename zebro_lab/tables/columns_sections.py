@@ -210,6 +210,9 @@ def is_sectioned(document: Mapping[str, Any]) -> bool:
 def is_for(kind: str, document: Mapping[str, Any], *, beside: bool) -> bool:
     """Return whether a `columns.toml` has something for a kind of table.
 
+    With sections it must have that of the kind. Without, it is for legs and rigs; but above the
+    table's folder, if it maps columns, for legs if one is named `theta…`, else for rigs.
+
     Args:
         kind: One of `KINDS`.
         document: Content of the file.

@@ -48,7 +48,7 @@ _OTHERS: Final = {
 PLAIN_SUFFIXES: Final = tuple(s for s in (*READERS, _EXCEL) if s != _NAMED_ONLY)
 """Suffixes of the tables that are found in a folder; a .txt is read only where it is named."""
 TABLE_SUFFIXES: Final = tuple(s + packed for s in PLAIN_SUFFIXES for packed in ("", ".gz"))
-"""The same with those of gzipped tables."""
+"""Suffixes of the tables that are found in a folder, gzipped or not."""
 
 
 def is_table_file(path: Path) -> bool:

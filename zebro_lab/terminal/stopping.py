@@ -23,7 +23,7 @@ SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 PATIENCE: Final = 5.0
 """Time after which a process is stopped again where a library has caught the exception [s].
 
-As long again after that, it is ended.
+After as long again it is ended.
 """
 
 _asked = False

@@ -199,7 +199,10 @@ def _run_folder_table(
 
 
 def joined_samples(parts: Sequence[RigPart]) -> SlipSamples:
-    """Join the samples of all parts, runs numbered throughout."""
+    """Join the samples of all parts, runs numbered throughout.
+
+    Times are kept only if all parts have them, and the angle of a disc likewise.
+    """
     first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
     timed = [part.time for part in parts if part.time is not None]
     return SlipSamples(

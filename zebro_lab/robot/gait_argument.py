@@ -263,7 +263,8 @@ def _angles(
 ) -> tuple[float | None, float | None]:
     """Parse INNER[,OUTER] in degrees to radians, None for an angle that is not given.
 
-    Without `text`, INNER is `default` [deg].
+    Without `text`, INNER is `default` [deg]. Raises `SettingsError` for any other text, and for
+    angles other than 0 and below `LEAST_DEG`, which are probably in radians.
     """
     if text is None:
         return (None if default is None else float(np.radians(default))), None

@@ -173,6 +173,8 @@ def read_signals(folder: Path) -> RunSignals:
 def profile_of(folder: Path, name: str) -> Path:
     """Return the path of the profile that describes a stream.
 
+    Legs and each IMU have a profile of their own; all other streams share that of the slip rig.
+
     Args:
         folder: The run folder.
         name: Name of the stream.

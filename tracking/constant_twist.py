@@ -47,7 +47,7 @@ class Process(NamedTuple):
 
 
 def link_weights(dt: Array, process: Process) -> tuple[Array, float]:
-    """Compute the inverse of cov e for every interval.
+    """Compute the inverse covariance of the motion model's error e for every interval.
 
     Args:
         dt: Intervals, shape (n,), above 0 [s].

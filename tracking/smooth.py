@@ -126,6 +126,7 @@ def smooth(
         ) from error
     state, own = np.concatenate(solved.states), np.concatenate(solved.covariances)
     by_error = problem.gain(solved, known.by_error)
+    # `own` is the covariance if the shared errors were known; this is what they add.
     common = by_error @ solved.shared_covariance @ by_error.transpose(0, 2, 1)
     corrected = np.concatenate([part.corrected(solved.shared) for part in parts])
     residual = state[:, :3] - corrected

@@ -293,7 +293,10 @@ class RigGuards:
     def _check_motion(
         self, batch: Batch, wanted: tuple[float, float], standing: bool, now: float
     ) -> None:
-        """Check that both discs follow their set-points and that no sensor is frozen."""
+        """Check that both discs follow their set-points and that no sensor is frozen.
+
+        The forces must change while the leg disc turns, the speed of a disc while this one does.
+        """
         forces = np.column_stack([batch.normal, batch.traction])
         self._frozen_forces.check(forces, wanted=wanted[0], now=now)
         narrower = TURNING if standing else math.inf

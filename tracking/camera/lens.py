@@ -40,8 +40,8 @@ class Camera:
             size: Width and height of the scaled pictures [px].
 
         Raises:
-            ValueError: When the aspect ratio differs (by more than 1 px of the calibrated height),
-                as of cropped pictures.
+            ValueError: When the aspect ratio differs, as of cropped pictures: by more than 1 px in
+                height, at the size of the calibration.
         """
         ratio = size[0] / self.size[0]
         if abs(size[1] / self.size[1] - ratio) * self.size[1] > 1.0:

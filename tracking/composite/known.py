@@ -246,7 +246,7 @@ def disturbance_sd(score: float, share: float) -> float:
     """Compute the error of x and of y that other exposures and the floor cause, in robot lengths.
 
     Args:
-        score: Correlation of the exposure's visible part with the template [-].
+        score: Correlation of the exposure's visible part with the template, above 0 [-].
         share: Visible share of the top [-].
     """
     power = max(1 - score**2, 0.0) / score**2

@@ -142,7 +142,7 @@ class Adjustment:
         slots = {stand_name(k): slice(6 * k, 6 * k + 6) for k in range(len(self.views))}
         slots |= {mark_name(key): slot for key, slot in self._mark_slots.items()}
         whole[: own.start, : own.start] = np.eye(own.start)
-        whole[own.start : own.start + 9, own] = root
+        whole[own.start : own.start + 9, own] = root  # from r unknowns to 9 parameters of the lens
         whole[-2:, -2:] = np.eye(2)
         slots |= {LENS: slice(own.start, own.start + 9), EDGES: slice(own.start + 9, len(whole))}
         return SharedErrors(whole @ covariance @ whole.T, slots)

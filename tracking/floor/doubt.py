@@ -99,7 +99,11 @@ def doubts(problem: Adjustment, found: Adjusted) -> tuple[SuspectValue, ...]:
 
 
 def _suspects(problem: Adjustment, plain: _Weighed) -> Iterator[SuspectValue]:
-    """Yield each mark's place, then the side of all prints, then the focal length as suspects."""
+    """Yield each mark's place, then the side of all prints, then the focal length as suspects.
+
+    For each the problem is fitted again with a larger standard deviation of this value alone, and
+    the evidence is compared with that of `plain`, the fit with the stated ones.
+    """
     for key, mark in problem.floor.marks.items():
         loose = replace(mark, position_sd=_FAR * mark.position_sd)
         other = replace(problem, floor=problem.floor.with_marks({key: loose}))
@@ -161,6 +165,7 @@ def _weighed(problem: Adjustment, found: Adjusted) -> _Weighed:
     for sd in _SPREADS:
         tried = replace(problem, edge_sd=float(sd))
         found = tried.fitted(found)
+        # Half-Cauchy, as a density of the logarithm: the spreads are spaced evenly in it.
         prior = float(np.log(sd) - np.log1p((sd / EDGE_SCALE) ** 2))
         fits.append(_Weighed(tried, found, tried.log_evidence(found) + prior))
     best = max(fits, key=lambda fit: fit.log_evidence)

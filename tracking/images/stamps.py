@@ -85,6 +85,7 @@ def _common_polygon(
     below = np.column_stack((ones, numbers, -s - resolution - jitter))
     halves = np.concatenate((above, below))
     length = np.linalg.norm(halves[:, :2], axis=1)
+    # Chebyshev centre: HalfspaceIntersection needs a point inside, best far from all sides.
     inner = linprog(
         [0, 0, -1],
         A_ub=np.column_stack((halves[:, :2], length)),

@@ -278,9 +278,10 @@ def _likeness(own: Array, values: Array, drawn: Array, dictionary: str) -> float
 def _is_used(own: Array, fit: _Fit, cells: int) -> NDArray[np.bool_]:
     """Return whether points can be compared with the model: on the marker, or close around it.
 
-    Every print has a margin one cell wide; what lies beyond it is not known. Used is the margin
-    that `_BLURS_INSIDE` of blur leave unaffected by that, up to `_MARGIN` of the side. `own` (n, 2)
-    are the points in the marker's unit square, `cells` the cells along its side.
+    Every print has a margin one cell wide; what lies beyond it is not known. The margin is used up
+    to `_MARGIN` of the side, but not its outer `_BLURS_INSIDE` standard deviations of blur, which
+    show some of what lies beyond. `own` (n, 2) are the points in the marker's unit square, `cells`
+    the number of cells along its side.
     """
     blurred = _BLURS_INSIDE * fit.blur / _shortest_side(fit.corners)
     margin = np.clip(1 / cells - blurred, 0.0, _MARGIN)

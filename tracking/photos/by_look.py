@@ -152,6 +152,7 @@ def missed_too_far(pose: AnnotatedPose, missed: Array, sd_px: float) -> bool:
     tilt_sd = np.hypot(prior.tilt_sd, prior.mean_tilt_sd)
     held = np.array([(state[2] - prior.height) / height_sd, *(state[3:5] / tilt_sd)])
     square = float(np.sum((missed / sd_px) ** 2) + held @ held)
+    # Degrees of freedom: clicked coordinates and three priors, less the six of the pose.
     return square > float(chi2.isf(_NO_TOP, missed.size + 3 - 6))
 
 

@@ -89,9 +89,10 @@ class ImuProfile:
 
     def possible(self, counts: tuple[float, ...]) -> bool:
         """Return whether counts are finite and a quaternion has length 1 +/- `NORM_TOLERANCE`."""
-        places = self.columns(QUATERNION)
-        if not places:
-            return all(map(math.isfinite, counts))
+        if not all(map(math.isfinite, counts)):
+            return False
+        if not (places := self.columns(QUATERNION)):
+            return True
         norm = sum(counts[place] ** 2 for place in places) ** 0.5 / self.quaternion_scale
         return abs(norm - 1) <= NORM_TOLERANCE
 

@@ -109,7 +109,7 @@ def render_robot_file(described: RobotFile) -> str:
             "arc_deg": np.degrees(robot.leg_arc),
             "offset_deg": np.degrees(robot.leg_offset),
             "sign": described.leg_sign,
-            "speed_limit_deg_per_s": np.degrees(described.leg_speed_limit or 360.0),
+            "speed_limit_deg_per_s": np.degrees(described.leg_speed_limit or np.radians(400)),
         },
         "hips": {str(leg): hip for leg, hip in enumerate(robot.hips, start=1)},
     })  # fmt: skip

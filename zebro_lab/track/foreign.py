@@ -101,8 +101,8 @@ def _planar_columns(
 ) -> dict[str, Array]:
     """Return the columns of `track.csv` that are known of a trajectory in its plane, in SI.
 
-    A covariance is left out unless complete, and for a table whose plane is not xy, since columns
-    of a covariance refer to x and y of the table.
+    A covariance is left out unless complete. That of a table whose plane is not xy is left out too,
+    unless `sd` gives it, since its columns refer to x and y of the table.
 
     Args:
         trajectory: The trajectory.
@@ -117,8 +117,8 @@ def _planar_columns(
         known["z_m"] = trajectory.height
     if sd is not None:
         known |= _covariance(*sd, known, trajectory.file)
-    mapped_plane = trajectory.layout is not Layout.TABLE or trajectory.plane is Plane.XY
-    whole = mapped_plane and set(COVARIANCE) <= set(known)
+    in_plane = trajectory.layout is not Layout.TABLE or trajectory.plane is Plane.XY
+    whole = (in_plane or sd is not None) and set(COVARIANCE) <= set(known)
     left_out = () if whole else COVARIANCE
     return {name: known[name] for name in TRACK_UNITS if name in known and name not in left_out}
 

@@ -40,6 +40,7 @@ def test_roll_pitch_and_yaw_come_back_whatever_the_mounting(roll, pitch, yaw, tu
 def test_a_quaternion_that_is_no_rotation_is_refused():
     assert not PROFILE.possible((0,) * 10)
     assert not PROFILE.possible((16384, 16384, 0, 0, 0, 0, 0, 0, 0, 0))
+    assert not PROFILE.possible((16384, 0, 0, 0, 0, 0, 0, 0, 0, np.nan))
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,10 @@ def test_empty_file_is_the_sources_robot(read):
     assert found.marker is None
 
 
+def test_an_unknown_limit_of_leg_speed_is_shown_by_an_example():
+    assert "# speed_limit_deg_per_s = 400.0 " in render_robot_file(RobotFile())
+
+
 def test_units_are_converted_and_degrees_read(read):
     found = read('mass = "2170 g"\n[legs]\nradius = "3.5 cm"\narc_deg = 200\n'
                  "offset_deg = [0, 0, -5, 0, 0, 0]\nsign = [1, -1, 1, -1, 1, -1]\n"

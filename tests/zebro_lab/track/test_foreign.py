@@ -65,6 +65,15 @@ def test_a_covariance_comes_back_where_all_of_it_is_there(tmp_path):
     assert "cov_xx" not in part.columns
 
 
+def test_standard_deviations_give_a_covariance_in_any_plane(tmp_path):
+    poses = {"t_s": [0, 1, 2], "x_m": [0, 1, 2], "y_m": [0, 0, 0], "z_m": [0, 0, 1]}
+    asked = TrajectoryRequest(plane="xz")
+    track = read_foreign_track(
+        table(tmp_path, **poses), Columns(MAPPED_UNITS), asked, sd=(0.01, None)
+    )
+    np.testing.assert_allclose(track.columns["cov_xx"], 1e-4)
+
+
 def test_times_beside_a_file_that_has_some_are_refused(tmp_path):
     file = table(tmp_path, t=[0, 1, 2], x=[0, 1, 2], y=[0, 0, 0])
     with pytest.raises(SettingsError, match=r"--times: .*leave the option out"):

@@ -56,7 +56,8 @@ def overlay(compared: Comparison, *, simulated: bool) -> Figure:
 
 def _has_narrow_peak(curve: Curve) -> bool:
     """Return whether either mean curve peaks at less than `sheet.NARROW` of the largest slip."""
-    at = np.abs(curve.slip[np.nanargmax(np.abs(curve.bands[:, 1]), axis=1)])
+    means = np.abs(curve.bands[:, 1])
+    at = np.abs(curve.slip[np.nanargmax(means[np.isfinite(means).any(axis=1)], axis=1)])
     return bool(np.any(at < sheet.NARROW * np.abs(curve.slip).max()))
 
 

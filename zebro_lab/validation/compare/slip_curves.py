@@ -201,7 +201,7 @@ def _quantities(
 ) -> Iterator[Quantity]:
     """Yield peak slip, peak force and slope at zero slip of both curves at a load, if known.
 
-    Peaks are those of the side of zero slip that was tested farther; an unknown force counts as 0.
+    Peaks are those of the side of zero slip that was tested farther, among the known forces.
     A feature is left out if a draw of it is not finite, the peak slip also if all draws of a curve
     peak at the smallest slip, as does a curve that jumps at zero slip.
 
@@ -213,9 +213,14 @@ def _quantities(
     """
     side = slip > 0 if slip[-1] >= -slip[0] else slip < 0
     nearest = np.abs(slip[side]).min()
-    sizes = [np.where(np.isfinite(each[:, side]), np.abs(each[:, side]), 0.0) for each in forces]
+    sizes = [np.where(np.isfinite(each[:, side]), np.abs(each[:, side]), -1.0) for each in forces]
+    unknown = [np.where(size.max(axis=1) < 0, np.nan, 0.0) for size in sizes]
     peaks = [np.abs(slip[side])[size.argmax(axis=1)] for size in sizes]
-    pairs = (peaks, [size.max(axis=1) for size in sizes], slopes)
+    pairs = (
+        [at + gap for at, gap in zip(peaks, unknown, strict=True)],
+        [size.max(axis=1) + gap for size, gap in zip(sizes, unknown, strict=True)],
+        slopes,
+    )
     names = (("peak slip", ""), ("peak force", "N"), ("slope at zero slip", "N"))
     for (name, unit), (one, other) in zip(names, pairs, strict=True):
         known = np.isfinite(one).all() and np.isfinite(other).all()

@@ -51,6 +51,13 @@ def test_a_narrow_peak_has_a_panel_of_small_slips_below():
     assert whole.get_xlim()[1] > 1
 
 
+def test_a_curve_that_is_unknown_at_a_load_leaves_the_other_s_panels():
+    slip = np.linspace(0.01, 1.0, 100)
+    peak = [slip * np.exp(-slip / 0.05)] * 3
+    curve = Curve(slip, 2.0, np.stack([peak, np.full((3, 100), np.nan)]), POINTS)
+    assert len(overlay(comparison(curves=(curve,)), simulated=False).axes) == 2
+
+
 def test_tracks_are_drawn_from_their_start():
     figure = overlay(comparison(paths=(PATH, PATH)), simulated=False)
     (axes,) = figure.axes

@@ -69,6 +69,18 @@ def _regular(slip):
     return 0.5 * u * (3 - u**2)
 
 
+def test_a_load_at_which_the_given_curve_is_unknown_has_no_peak(tmp_path):
+    fitted = calibration(tmp_path / "fitted", friction=0.4, sd=0.01)
+    table = thesis_table((4.0, 7.5), points=400)
+    braking = table["normal_force"] < 5  # which the calibration did not test
+    table.loc[braking, ["slip_ratio", "traction_force"]] *= -1
+    table = table[~braking | (table["slip_ratio"] < -0.1)]
+    path = written_curve(tmp_path / "curve.csv", table)
+    _, by_name = compared(fitted, path, tmp_path / "out")
+    assert "peak force at 7.5 N" in by_name
+    assert "peak force at 4 N" not in by_name
+
+
 def test_friction_alone_has_no_peak_slip_and_no_slope_to_compare(tmp_path):
     fitted = calibration(tmp_path / "fitted")
     _, by_name = compared(fitted, "coulomb:0.4", tmp_path / "out")

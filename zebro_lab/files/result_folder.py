@@ -248,13 +248,20 @@ def _require_free(
 
 
 def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]) -> None:
-    """Raise `AlreadyExists` if an input, at `path`, is the folder or among the files it loses.
+    """Raise `AlreadyExists` if an input, at `path`, is the folder, or is or holds what it loses.
 
-    These are the files and subfolders directly in the folder whose names are in `replaced`.
+    Args:
+        out: The folder as it was given, for the message.
+        folder: Its real place.
+        path: The input, a file or folder.
+        replaced: Files and subfolders that the folder loses, relative to it.
     """
     place = real_place(path)
-    inside = place.is_relative_to(folder) and place.relative_to(folder).parts[:1]
-    if place == folder or (inside and inside[0] in replaced):
+    lost = [folder / name for name in replaced]
+    inside = place.is_relative_to(folder) and any(
+        place.is_relative_to(each) or each.is_relative_to(place) for each in lost
+    )
+    if place == folder or inside:
         raise AlreadyExists(
             f"{out} as --out would replace {path}, which this command reads; choose another --out"
         )

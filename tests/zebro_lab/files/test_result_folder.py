@@ -2,6 +2,7 @@
 """Results replace what the same command made, whole or not at all, and nothing of anybody else."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -102,3 +103,16 @@ def test_a_result_that_is_read_is_not_replaced(tmp_path):
     with pytest.raises(ZebroLabError, match="which this command reads"):
         require_replaceable(tmp_path / "track", TRACKED, inputs=(tmp_path / "link",))
     require_replaceable(tmp_path / "track", TRACKED, inputs=(tmp_path,))
+
+
+@pytest.mark.parametrize("read", ["inner", "inner/a.csv"])
+def test_a_result_inside_that_would_go_with_its_folder_is_not_read_and_lost(tmp_path, read):
+    outer = replace(KIND, inside={"inner": "inner"})
+    write(tmp_path)
+    with result_folder(
+        tmp_path / "inner", ResultKind("inner", "another", ("a.csv",)), content={}
+    ) as draft:
+        (draft / "a.csv").write_text("1")
+    require_replaceable(tmp_path, outer, inputs=())
+    with pytest.raises(ZebroLabError, match="which this command reads"):
+        require_replaceable(tmp_path, outer, inputs=(tmp_path / read,))

@@ -87,7 +87,7 @@ class TomlTable:
         return not self._entries
 
     @property
-    def left(self) -> tuple[str, ...]:
+    def unread(self) -> tuple[str, ...]:
         """Keys that have not been read yet, in the file's order."""
         return tuple(self._entries)
 

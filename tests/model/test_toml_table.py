@@ -27,7 +27,7 @@ def table(**entries) -> Table:
 @given(st.dictionaries(NAMES, st.floats(allow_nan=False, allow_infinity=False), min_size=1))
 def test_what_is_taken_is_what_stood_there_and_nothing_is_left(entries):
     found = table(**entries)
-    assert {key: found.number(key) for key in found.left} == entries
+    assert {key: found.number(key) for key in found.unread} == entries
     assert found.empty
     found.finish()
 

@@ -48,7 +48,7 @@ _TAKERS: Final = {
 def looks_like_other(headers: Collection[str], expected: Collection[str]) -> str:
     """Say which other kind of table the headers are of, and what takes it, for error messages.
 
-    Only canonical names are recognised, in either case: other headers may mean anything.
+    Only canonical names are recognised, in upper or lower case: other headers may mean anything.
 
     Args:
         headers: Headers of the table.
@@ -65,7 +65,7 @@ def looks_like_other(headers: Collection[str], expected: Collection[str]) -> str
 
 
 def _kind(names: Collection[str]) -> str | None:
-    """Return the first kind in `_MARKS` whose names all occur, in either case; None if none is."""
+    """Return the first kind in `_MARKS` whose names all occur in any letter case; else None."""
     lower = {name.lower() for name in names}
     return next((kind for marks, kind in _MARKS if marks <= lower), None)
 
@@ -222,7 +222,7 @@ class Columns:
         return mapped.unit_stated or table.unit_of(mapped.name, mapped.unit) is not None
 
     def conversions(self, table: RawTable) -> tuple[str, ...]:
-        """Return a note of the columns that are converted by the units that the file states.
+        """Return a note of the columns converted by units that the file states; empty if none is.
 
         Args:
             table: Table with the columns.
@@ -258,8 +258,8 @@ class Columns:
             advice: What to do about a cell without a number, for the error message.
 
         Raises:
-            DataError: The column is missing, ambiguous or of dates, or a cell has no finite number;
-                names the cell.
+            DataError: The column is missing, ambiguous or of dates, its unit in the file does not
+                fit, or a cell has no finite number; names the cell.
         """
         mapped = self.mapped[name]
         if not self.has(table, name):

@@ -193,7 +193,8 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
 def _unit(table: SettingsTable, si_unit: str) -> tuple[str, float]:
     """Read the unit of a column, by default SI; return it, and the factor that converts it to SI.
 
-    The factor of a unit of dates is 1.
+    The factor of a unit of dates is 1. Raises `SettingsError` for an unknown unit or one of another
+    quantity.
     """
     unit = table.text("unit") if "unit" in table else si_unit
     if si_unit == "s" and is_date_unit(unit):
@@ -205,7 +206,10 @@ def _unit(table: SettingsTable, si_unit: str) -> tuple[str, float]:
 
 
 def _scale(table: SettingsTable, unit: str) -> float:
-    """Read the number that converts the file's numbers to the unit, which must be stated then."""
+    """Read the number that converts the file's numbers to `unit`; 1 if it is not stated.
+
+    Raises `SettingsError` if it is stated and not above 0, or beside no unit or one of dates.
+    """
     if "scale" not in table:
         return 1.0
     if not unit or is_date_unit(unit):
@@ -215,7 +219,11 @@ def _scale(table: SettingsTable, unit: str) -> float:
 
 
 def _sign(table: SettingsTable) -> int:
-    """Read a sign: a number or a text; a guess such as "-1?" leaves a text when "?" is deleted."""
+    """Read a sign, 1 or -1 as a number or a text; 1 if none is stated.
+
+    It may be a text, since a guess such as "-1?" leaves one when its "?" is deleted. Raises
+    `SettingsError` for anything else.
+    """
     if "sign" not in table:
         return 1
     found = table.value("sign")
@@ -225,7 +233,7 @@ def _sign(table: SettingsTable) -> int:
 
 
 def _runs(table: SettingsTable) -> RunRule:
-    """Read the rule that separates runs; raise if more than one of its keys is given."""
+    """Read the rule that separates runs; `SettingsError` if more than one of its keys is given."""
     runs = table.table("runs")
     given = [key for key in ("by", "gap", "each_row") if key in runs]
     if len(given) > 1:
@@ -257,7 +265,7 @@ def _quantities(
 
 def _priors(table: SettingsTable) -> tuple[str, ...]:
     """Return each prior as one text: a Gaussian `NAME = MEAN ± SD`, a family `NAME ~ FAMILY(…)`."""
-    texts = {key: table.text(key, least=1) for key in table.left}
+    texts = {key: table.text(key, least=1) for key in table.unread}
     return tuple(
         f"{key} {'~' if '(' in text else '='} {text.lstrip('~= ')}" for key, text in texts.items()
     )

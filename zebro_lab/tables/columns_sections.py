@@ -133,7 +133,7 @@ def columns_above(
 
 def _has_entries(kind: str, file: Path) -> bool:
     """Return whether a `columns.toml` states more than the source of a kind of table."""
-    return bool(set(read_section(kind, file).left) - {"source"})
+    return bool(set(read_section(kind, file).unread) - {"source"})
 
 
 def _stated_source(kind: str, file: Path, document: Mapping[str, Any]) -> tuple[Path, str] | None:
@@ -167,7 +167,9 @@ def _above(folder: Path) -> Iterator[Path]:
 
 
 def require_checked(entries: Mapping[str, Any], *, file: Path, path: str = "") -> None:
-    """Check that no value ends in "?", as guesses of `zebro-lab init` do.
+    """Check that no text ends in "?", as guesses of `zebro-lab init` do.
+
+    Only the tables in `_GUESSED` are searched, with all tables and lists in them.
 
     Args:
         entries: Entries of a `columns.toml` or of a section of it.
@@ -193,7 +195,10 @@ def require_checked(entries: Mapping[str, Any], *, file: Path, path: str = "") -
 
 
 def read_source(table: SettingsTable) -> str | None:
-    """Read where the data come from; None if that is not stated."""
+    """Read where the data come from; None if that is not stated.
+
+    Raises `SettingsError` if what stands before the first ":" is none of `_SOURCES`.
+    """
     if "source" not in table:
         return None
     source = table.text("source")

@@ -134,7 +134,12 @@ def _is_open(text: str) -> bool:
 
 
 def _layout(path: Path, lines: list[Line], *, bare: bool) -> TextLayout:
-    """Find separator and header from the first lines; raise if there are too many columns."""
+    """Find separator, header and first row of data from the first lines, by `find_layout`.
+
+    Raises:
+        DataError: `find_layout` raised it, here with the name of the file; or the header has more
+            than `MOST_COLUMNS` names.
+    """
     try:
         layout = find_layout(lines, bare=bare)
     except DataError as error:

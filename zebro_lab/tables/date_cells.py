@@ -48,7 +48,8 @@ def seconds_of_dates(table: RawTable, name: str, unit: str) -> Array:
             that do not, "h:m:s" for times of day.
 
     Raises:
-        DataError: The column is missing, or a cell is no such date; names the cell.
+        DataError: The column is missing or of numbers; or a cell is no such date, has no time zone
+            although the unit states none, or has one beside that of the unit; names the cell.
     """
     cells = table.column(name)
     if pd.api.types.is_numeric_dtype(cells) and not cells.isna().all():

@@ -30,12 +30,13 @@ def disc_angles(
         time: Time of each kept row, shape (n,) [s]; None without times.
 
     Returns:
-        The angles, accumulated or wrapped; None where none are recorded, a radius is not known, or
-        each row is a trial.
+        The angles, accumulated or wrapped; None where none are recorded, a radius is not known,
+        each row is a trial, or none of those recorded can be used.
 
     Raises:
         DataError: A cell is no finite number, or by its angle a disc turns otherwise than by its
-            speed; in a recorded run the latter gives a note, and the angle is not used.
+            speed. In a recorded run the latter gives a note, and the angle is not used; likewise
+            in any table an angle that does not change.
     """
     recorded = [name for name in ANGLES if table.source_of(name)]
     if not recorded:

@@ -84,7 +84,10 @@ def _filled_sheet(path: Path, sheets: Mapping[str, Cells], wanted: str | None) -
 
 @contextmanager
 def _opened(path: Path, content: bytes, *, values: bool) -> Iterator[Any]:
-    """Open a workbook with openpyxl: stored values of formulas if `values`, else the formulas."""
+    """Open a workbook with openpyxl: stored values of formulas if `values`, else the formulas.
+
+    Raises `DataError` if openpyxl is not installed.
+    """
     try:
         import openpyxl
     except ImportError as error:
@@ -190,7 +193,7 @@ def _text(cell: Any) -> str:
 
 
 def _require_bounded(path: Path, content: bytes) -> None:
-    """Raise if a file is no zip archive, as workbooks are, or is too large when unpacked."""
+    """Raise `DataError` if a file is no zip archive, as workbooks are, or unpacks to too much."""
     if not content.startswith(b"PK"):
         raise DataError("is not an Excel workbook; if it is text, rename it to end in .csv",
                         file=path)  # fmt: skip

@@ -58,14 +58,14 @@ class NoHeader(ValueError):
 
 
 def data_rows(rows: Sequence[Row]) -> DataRows | None:
-    """Find the rows of data: those of which half of the cells or more are numbers or dates.
+    """Find the rows of data: those with at least as many numbers or dates as texts, and with one.
 
     Settings above a table have numbers too. Of several stretches of such rows the one is best that
     has most values, weighted by their share of its cells. An earlier stretch that is like the best
     one, in width, share and first cell, is taken instead: what is between is a row that cannot be
     read, and no header. The first row is a header where it has a text above numbers: `t,1,2,3`.
 
-    Returns None if no row has a number.
+    Returns None if there is no such row.
     """
     kinds = [[kind_of(cell) for cell in row] for row in rows]
     found = [_described(rows, kinds, first, stop) for first, stop in _stretches(kinds)]

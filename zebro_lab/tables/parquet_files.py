@@ -59,7 +59,10 @@ def _cells(column: pa.ChunkedArray) -> pd.Series:
 
 
 def _is_plain(kind: Any) -> bool:
-    """Return whether an Arrow type, or that of a dictionary's values, is read: see `known`."""
+    """Return whether cells of an Arrow type, or of a dictionary with such values, are read.
+
+    Those are numbers, truth values, dates, times and strings, and columns without any value.
+    """
     kind = kind.value_type if isinstance(kind, pa.DictionaryType) else kind
     known = (pa.types.is_string, pa.types.is_large_string, pa.types.is_primitive, pa.types.is_null,
              pa.types.is_decimal)  # fmt: skip

@@ -92,9 +92,9 @@ class RigErrorsStated:
         """Return the standard deviations that a fit takes.
 
         Args:
-            radii: `radius_leg` and `radius_ground` [m], those that are known; without both, the
-                ratio's standard deviation is `UNKNOWN_RATIO` if it is not given, and the scale of
-                slip that the speeds do not show `UNKNOWN_SCATTER`.
+            radii: `radius_leg` and `radius_ground` [m], those that are known. Unless both are, the
+                standard deviation of their ratio is `UNKNOWN_RATIO` if `radius_ratio` is not
+                stated, and that of the slip which the speeds do not show is `UNKNOWN_SCATTER`.
         """
         ratio, scatter = UNKNOWN_RATIO, UNKNOWN_SCATTER
         if {"radius_leg", "radius_ground"} <= radii.keys():

@@ -44,7 +44,7 @@ class RigTable:
         return None
 
     def conversions(self) -> tuple[str, ...]:
-        """Return a note for each column whose numbers are converted, with its unit and factor."""
+        """Return a note for each column whose factor to SI is not 1, with its unit and factor."""
         found = {name: self.source_of(name) for name in CANONICAL}
         return tuple(
             f"{name}: {column.said}" for name, column in found.items()

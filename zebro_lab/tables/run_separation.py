@@ -88,7 +88,7 @@ def run_title(table: RigTable, row: int, by: Sequence[str]) -> str:
 def run_names(titles: Sequence[str], label: str, rule: str) -> tuple[str, ...]:
     """Return the name of each run of a table: its title, or its number if no run has a title.
 
-    A table that is one run has the label alone. Titles that repeat are numbered.
+    By the rule `ONE_RUN` the name is the label alone. Titles that repeat are numbered.
 
     Args:
         titles: Title of each run by `run_title`.

@@ -61,7 +61,7 @@ def slip(table: RigTable) -> SlipColumn:
 
 
 def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) -> SlipColumn:
-    """Convert slip ratios to another definition.
+    """Convert slip ratios to another definition; those that have it are returned unchecked.
 
     Args:
         table: Table that the slip ratios were read from, for error messages.
@@ -102,6 +102,7 @@ def _given_definition(table: RigTable) -> SlipDefinition | None:
 
     Raises:
         DataError: The column has two definitions, or another one than the column map.
+        SettingsError: The column has an unknown definition.
     """
     mapped = table.columns.columns.get("slip_ratio")
     stated = mapped.definition if mapped else None
@@ -132,9 +133,10 @@ def _given_definition(table: RigTable) -> SlipDefinition | None:
 def _given_slip(
     table: RigTable, given: MappedColumn, definition: SlipDefinition | None, *, speeds: bool
 ) -> SlipColumn:
-    """Return the slip ratio in the table; raise if its definition is unknown or a value impossible.
+    """Return the slip ratio in the table, as its column gives it.
 
-    `speeds` tells whether the table also has disc speeds, which are then noted as not used.
+    Raises `DataError` if its definition is None or a value is impossible for it. `speeds` tells
+    whether the table also has disc speeds, which are then noted as not used.
     """
     if definition is None:
         raise table.raw.fault(
@@ -151,7 +153,7 @@ def _given_slip(
 
 
 def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition) -> None:
-    """Raise if a slip ratio is beyond the range of its definition by more than `_SLIP_NOISE`.
+    """Raise `DataError` if a slip ratio is beyond its definition's range by over `_SLIP_NOISE`.
 
     Noise may put a measured slip ratio past its limit.
     """
@@ -168,9 +170,10 @@ def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition)
 
 
 def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipColumn:
-    """Compute the `material` slip ratio from the rim speeds; raise where the leg disc stands still.
+    """Compute the `material` slip ratio from the rim speeds.
 
-    `unused` is a slip ratio in the table that is ignored, for the note.
+    Raises `DataError` where the leg disc stands still. `unused` is a slip ratio in the table that
+    is ignored, for the note.
     """
     speed_leg = table.si("omega_leg") * table.constant_or_column("radius_leg")
     speed_ground = table.si("omega_ground") * table.constant_or_column("radius_ground")

@@ -52,15 +52,19 @@ TABLE_SUFFIXES: Final = tuple(s + packed for s in PLAIN_SUFFIXES for packed in (
 
 
 def is_table_file(path: Path) -> bool:
-    """Return whether a file in a folder is taken for a table, by its name, in either case.
+    """Return whether a file found in a folder is taken for a table: by its suffix, without .txt.
 
-    Files that Excel makes while a workbook is open (~$NAME.xlsx) are none.
+    The suffix may be in capitals, and .gz may follow. Files that Excel makes while a workbook is
+    open (~$NAME.xlsx) are none.
     """
     return path.name.lower().endswith(TABLE_SUFFIXES) and not path.name.startswith("~$")
 
 
 def has_table_name(path: Path) -> bool:
-    """Return whether a file that is named is read as a table, by its name, in either case."""
+    """Return whether a file ends in a suffix of a table, .txt included, as if named to be read.
+
+    The suffix may be in capitals, and .gz may follow.
+    """
     return bool(_suffix(path))
 
 
@@ -112,7 +116,7 @@ def table_stem(path: Path) -> str:
 
 
 def _suffix(path: Path) -> str:
-    """Return the suffix of a table's name, in lower case, with .gz; "" for any other file."""
+    """Return the suffix of a table's name in lower case, with .gz if it ends so; else ""."""
     name = path.name.lower()
     known = [suffix for suffix in (*READERS, _EXCEL) if name.removesuffix(".gz").endswith(suffix)]
     return "".join([*known[:1], ".gz" * name.endswith(".gz")]) if known else ""

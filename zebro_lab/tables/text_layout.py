@@ -134,7 +134,7 @@ def uneven_row(cells: int, names: int, advice: str) -> str:
 
 
 def _require_no_receipt(lines: Sequence[Line]) -> None:
-    """Raise if a serial monitor put the time of receipt before more than half of the lines."""
+    """Raise `DataError` if over half of the lines begin with a serial monitor's time of receipt."""
     found = [match[0] for _, line in lines if (match := _RECEIPT.match(line))]
     if len(found) <= len(lines) // 2:
         return
@@ -203,7 +203,7 @@ def _words(line: str, width: int) -> list[str]:
 
 
 def _only_best(candidates: Sequence[_Candidate]) -> _Candidate:
-    """Return the candidate of the highest rank; raise if another separator has the same rank.
+    """Return the candidate of the highest rank; `DataError` if another separator has that rank.
 
     It is no tie if there is no header or only one column, or if the other separator is blanks,
     which also separate what tabs do.
@@ -218,13 +218,13 @@ def _only_best(candidates: Sequence[_Candidate]) -> _Candidate:
 
 
 def _several(separators: Sequence[str]) -> DataError:
-    """Return an error that each of several separators gives a table."""
+    """Return, without raising, an error that each of several separators gives a table."""
     names = " or by ".join(SEPARATORS[each] for each in separators)
     return DataError(f"cells may be separated by {names}; save the file with one of these only")
 
 
 def _no_header(best: _Candidate, body: Sequence[Line]) -> DataError:
-    """Return an error that says why no header was found, and how to mend that.
+    """Return, without raising, an error that says why no header was found, and how to mend that.
 
     A table with a name at the start of each line is transposed; two rows may be the header; the
     first line may be numbers; or the row above the numbers has another number of cells.

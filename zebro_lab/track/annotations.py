@@ -61,9 +61,9 @@ def read_annotations(file: Path) -> Annotations:
     table = read_settings(file, advice="`zebro-lab annotate PHOTOS` writes one")
     templates = _templates(table)
     clicks = table.table("clicks")
-    points = {photo: clicks.table(photo) for photo in clicks.left}
+    points = {photo: clicks.table(photo) for photo in clicks.unread}
     by_photo = {
-        photo: {name: _pixel(own, name) for name in own.left} for photo, own in points.items()
+        photo: {name: _pixel(own, name) for name in own.unread} for photo, own in points.items()
     }
     annotations = Annotations(templates, by_photo, _corrections(table))
     table.finish()

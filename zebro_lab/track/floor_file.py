@@ -42,8 +42,8 @@ def read_floor_file(file: Path) -> FloorMap:
         dictionary = table.text("dictionary", DICTIONARY, least=1)
         floor = FloorMap(
             dictionary,
-            tuple(_marker(markers, number, common) for number in markers.left),
-            tuple(_point(points, name, common) for name in points.left),
+            tuple(_marker(markers, number, common) for number in markers.unread),
+            tuple(_point(points, name, common) for name in points.unread),
         )
         require_in_dictionary(dictionary, floor.marker_ids)
     except TrackingError as error:

@@ -22,16 +22,16 @@ def section(folder, text, kind="rig"):
 def test_entries_without_sections_are_for_rig_and_legs(tmp_path):
     text = 'source = "real"\n[columns]\nt = "ET"\n'
     for kind in ("rig", "legs"):
-        assert section(tmp_path, text, kind).left == ("source", "columns")
+        assert section(tmp_path, text, kind).unread == ("source", "columns")
     for kind in ("imu", "track"):
-        assert section(tmp_path, text, kind).left == ("source",)
+        assert section(tmp_path, text, kind).unread == ("source",)
 
 
 def test_each_kind_has_a_section_and_all_share_the_source(tmp_path):
     text = 'source = "real"\n[legs.columns]\nt = "ET"\n[track]\nsheet = "A"\n'
-    assert section(tmp_path, text, "legs").left == ("source", "columns")
+    assert section(tmp_path, text, "legs").unread == ("source", "columns")
     assert section(tmp_path, text, "track").text("sheet") == "A"
-    assert section(tmp_path, text, "rig").left == ("source",)
+    assert section(tmp_path, text, "rig").unread == ("source",)
 
 
 @pytest.mark.parametrize(

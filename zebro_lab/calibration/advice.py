@@ -33,7 +33,10 @@ PASSES: Final = 4
 
 @singledispatch
 def advice_text(advice: Advice) -> str:
-    """Format advice as text, of several lines where it holds lines of a plan or commands."""
+    """Format advice as text, of several lines where it holds lines of a plan or commands.
+
+    Of a kind of advice without a function below, the text is its reason alone.
+    """
     return advice.reason
 
 

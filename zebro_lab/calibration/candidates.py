@@ -76,8 +76,9 @@ def _has_both_signs(samples: SlipSamples) -> bool:
 def _together(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
     """Return the laws to choose from with driving and braking on one curve.
 
-    Of the Magic Formula there are one or two by its curvature (`_formulas`). With `--law compare`
-    the other laws are added, and at several loads load-sensitive Magic Formulas.
+    Another law than the Magic Formula, if named, is the only one. Of the Magic Formula there are
+    one or two by its curvature (`_formulas`); a single one has the law's own name. With `--law
+    compare` the other laws are added, and at several loads load-sensitive Magic Formulas.
     """
     if request.law not in (MagicFormula.name, COMPARE):
         return {request.law: slip_law(request.law)}

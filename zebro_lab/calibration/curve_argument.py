@@ -111,7 +111,10 @@ def parse_curve(path: Path) -> GivenCurve:
 
 
 def _coulomb(text: str) -> GivenCurve:
-    """Parse `coulomb:MU`: mu times load at any slip, in the direction of slip."""
+    """Parse `coulomb:MU`: mu times load at any slip, in the direction of slip.
+
+    Raises `SettingsError` if a velocity follows MU, or as `coulomb_numbers` does.
+    """
     friction, *others = coulomb_numbers(text) or (math.nan,)
     if others:
         raise SettingsError(
@@ -168,7 +171,7 @@ class CurveTable:
         definition: Slip definition.
         source: Source as stated; "unknown" if not stated.
         files: Files that were read.
-        notes: How slip was obtained and units were converted, one line each.
+        notes: How the file was read and which units were converted, one line each.
     """
 
     slip: Array
@@ -183,7 +186,8 @@ class CurveTable:
 def is_curve_table(path: Path) -> bool:
     """Return whether a file is a table whose rows are points of a curve, not samples of runs.
 
-    Its headers have no time, run or disc speed, and the `columns.toml` for it states no runs.
+    Neither its headers nor the columns of its `columns.toml` include a time, run or disc speed, and
+    [runs] of that file states neither `by` nor `gap`. False if there is no such file.
     """
     if not path.is_file():
         return False

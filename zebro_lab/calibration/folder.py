@@ -67,7 +67,8 @@ class SlipFile:
             was tested, or if the file does not say.
         caveat: Headline of the verdict if the fit can be trusted as far as it was tested only;
             else None.
-        levels: Loads that were set, as measured, by rising load [N]; empty if it does not say.
+        levels: Median measured load at each load that was set, rising [N]; empty if the file does
+            not say.
     """
 
     curve: SlipCurve
@@ -137,7 +138,12 @@ def read_slip_file(path: Path) -> SlipFile:
 
 
 def _reservations(verdict: Mapping[str, Any]) -> tuple[str | None, str | None]:
-    """Return doubt and caveat of `SlipFile`; files of earlier versions have no `state`."""
+    """Return doubt and caveat of `SlipFile`: the headline as one of them, else None.
+
+    A fit that is not trustworthy has a caveat in the state `AS_TESTED`, and a doubt in any other
+    state or without one, as in files of earlier versions. A verdict that does not say counts as
+    trustworthy.
+    """
     headline = _text(verdict, "headline", "not trustworthy")
     if verdict.get("trustworthy", True):
         return None, None
@@ -229,9 +235,11 @@ def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def _law_content(calibration: "Calibration") -> dict[str, Any]:
-    """Return the tables of the law: options, posterior of its parameters, covariance, and curves.
+    """Return the tables `law`, `parameters`, `covariance` and `curve` of `slip.toml`.
 
-    Each entry of `curve` has the posterior medians of the curve's features at one load.
+    `parameters` has the posterior of all parameters, those of the measurement too; `covariance`
+    that of the law's parameters alone, 0 for fixed ones. Each entry of `curve` has the posterior
+    medians of the curve's features (peak, slope, …) at one load.
     """
     law, k = calibration.posterior.law, len(calibration.posterior.law.parameters)
     return {
@@ -255,9 +263,10 @@ def _law_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def _run_out_content(calibration: "Calibration") -> dict[str, Any]:
-    """Return the table `run_out` for discs whose angles are recorded; nothing without.
+    """Return the table `run_out` of discs whose angles are recorded; empty if none is.
 
-    It holds the cosine and sine coefficients of each radius, once and twice a turn [m].
+    It holds mean and standard deviation of the cosine and sine coefficients of each radius, once
+    and twice a turn [m], whether slip is corrected, and what that gains in log density.
     """
     found = calibration.run_out
     if found is None:
@@ -279,7 +288,7 @@ def _run_out_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def _tested_content(calibration: "Calibration") -> dict[str, Any]:
-    """Return the table `tested`: ranges of block means, and numbers of samples and runs."""
+    """Return the table `tested`: ranges of block means, length of blocks, samples and runs."""
     blocks = calibration.posterior.blocks
     return {
         "normal_force": [float(blocks.normal_force.min()), float(blocks.normal_force.max())],

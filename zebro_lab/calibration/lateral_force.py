@@ -32,7 +32,7 @@ class LateralForce:
         mean: Mean, with the sign that the data give it [N].
         sd: Standard deviation [N].
         over_load: Mean of lateral force over normal force [-].
-        over_traction: Mean over the mean size of traction, with the mean's sign; infinite without
+        over_traction: Mean over the mean size of traction, with the mean's sign; +infinity without
             any traction [-].
     """
 

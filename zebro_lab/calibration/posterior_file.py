@@ -57,7 +57,7 @@ def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Gener
     Args:
         slip: Slip law named by `--slip`.
         curve: Slip curve of this law, with the mean and covariance of the Gaussian.
-        n: Number of draws.
+        n: Number of draws; of the file they are drawn with replacement only if it has fewer.
         rng: Random number generator.
 
     Returns:
@@ -131,7 +131,8 @@ def read_slip_blocks(slip_toml: Path, definition: SlipDefinition) -> SlipBlocks:
 
     Raises:
         NotFound: There is no `posterior.nc`.
-        DataError: `posterior.nc` is damaged, or was written by a version that kept less of blocks.
+        DataError: `posterior.nc` is damaged, its arrays differ in length or its blocks are not in
+            the order of runs, or it was written by a version that kept less of blocks.
     """
     file = slip_toml.parent / POSTERIOR
     names = ("slip_ratio", "normal_force", "run", "samples", *BLOCK_MOMENTS, "run_slip_error")

@@ -60,7 +60,8 @@ class StatedPrior:
             file: File that it was stated in, for messages.
 
         Raises:
-            SettingsError: The unit does not fit, or the prior lies outside the parameter's bounds.
+            SettingsError: The unit does not fit; the mean, median or an end lies outside the
+                parameter's bounds; or the prior is lognormal and the lower bound is negative.
         """
         try:
             factor = factor_to_si(self.unit, parameter.unit) if self.unit else 1.0

@@ -156,9 +156,12 @@ def _laws_of(
 ) -> dict[str, SlipLaw]:
     """Return the law of an earlier calibration, the only one that its posterior is a prior of.
 
+    The default, `--law magic-formula`, stands for any law, unless load sensitivity is asked for.
+
     Raises:
-        SettingsError: The request names another law, load sensitivity or sides, or the data have
-            another slip definition.
+        SettingsError: The request names another law; asks for load sensitivity by the default while
+            the earlier law is no Magic Formula; or asks for sides apart while they were fitted
+            together. Or the data have another slip definition.
     """
     law, definition = earlier.curve.law, earlier.curve.definition
     apart = isinstance(law, SidedLaw)
@@ -246,7 +249,8 @@ def read_earlier(path: Path) -> EarlierCalibration:
 
     Raises:
         NotFound: There is no `posterior.nc` beside the `slip.toml`.
-        DataError: A file is missing or damaged.
+        DataError: The `slip.toml` is missing or damaged, or `posterior.nc` is damaged or lacks
+            draws of a parameter of the law, as of one that was fixed.
     """
     found = read_slip_file(path)
     posterior = found.file.with_name(POSTERIOR)

@@ -101,7 +101,7 @@ class CalibrationRequest:
     form: FormatOption = "png"
 
     def __post_init__(self) -> None:
-        """Raise `SettingsError` for options that have no meaning or none beside the others."""
+        """Raise `SettingsError` for options that contradict each other, or an unreadable prior."""
         self._require_priors()
         if self.resume and self.engine == "laplace":
             raise SettingsError(

@@ -146,7 +146,7 @@ def read_rig_data(
 def _distinct(
     sources: list[DataSource],
 ) -> tuple[list[DataSource], list[tuple[DataSource, DataSource]]]:
-    """Return the sources without copies, and pairs of a copy and its original."""
+    """Return the sources without copies, whose content is equal, and pairs (copy, original)."""
     if len(sources) < 2:  # nothing to compare, so that nothing is hashed
         return sources, []
     return first_of_each(
@@ -183,7 +183,7 @@ def _read_parts(
     """Read tables and runs; return also why runs are left out that were cut short too early.
 
     Raises:
-        ZebroLabError: As in `read_part`, but for a run whose recorder never ended it.
+        ZebroLabError: As in `read_part`, except a `DataError` of a run that was cut short.
     """
     parts, died = [], {}
     for source in sources:

@@ -138,7 +138,8 @@ def read_part(
 
     Args:
         source: The table or run folder.
-        columns: Column map; for a run folder only its row conditions and load cell apply.
+        columns: Column map; for a run folder only its row conditions, load cell, priors and errors
+            of the rig apply.
         label: Prefix of the names of the runs.
         wanted: Definition to convert slip ratios to; None keeps that of the data.
 
@@ -182,7 +183,7 @@ def _run_folder_table(
 
     The table has canonical columns in SI. It is one run, or one run per sweep if raw samples of
     several sweeps were recorded; raw samples outside sweeps are dropped. Of a `columns.toml` only
-    row conditions and load cell apply.
+    row conditions, load cell, priors and errors of the rig apply.
     """
     run, notes, rule = read_slip_rig_run(folder), (), RunRule()
     columns_read = {name: each for name, each in vars(run.table).items() if each is not None}
@@ -226,7 +227,10 @@ def joined_source(parts: Sequence[RigPart]) -> str:
 
 
 def joined_load_cell(parts: Sequence[RigPart]) -> dict[str, float]:
-    """Return what the parts state of one load cell; raise where they differ."""
+    """Return what the parts state of the load cell, by name; empty if none states anything.
+
+    Raises `SettingsError` where two parts state different values of one name.
+    """
     joined: dict[str, float] = {}
     origin: dict[str, Path | None] = {}
     for part in parts:
@@ -242,7 +246,10 @@ def joined_load_cell(parts: Sequence[RigPart]) -> dict[str, float]:
 
 
 def joined_priors(parts: Sequence[RigPart]) -> tuple[tuple[str, ...], Path | None]:
-    """Return the priors of the parts' column maps and their file; raise where two maps differ."""
+    """Return the priors of the parts' column maps and their file; empty and None without priors.
+
+    Raises `SettingsError` where two maps with priors differ, apart from their order.
+    """
     stated = {part.columns.file: part.columns.priors for part in parts if part.columns.priors}
     maps = list(stated.items())
     for file, priors in maps[1:]:

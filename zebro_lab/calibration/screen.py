@@ -49,6 +49,8 @@ def print_data(console: Console, data: RigData) -> None:
 def print_preview(console: Console, found: Preview) -> None:
     """Print the parameters of the first answer, which no check has seen, before sampling.
 
+    If the answer is not reliable, a line says that there is none.
+
     Args:
         console: Console to print to.
         found: The first answer.

@@ -31,7 +31,8 @@ class NamedSlip(Slip):
             convert.
         walks: Posterior of legs and floor after tracked walks; None if no walks were fitted, or
             they were not read.
-        doubts: A warning with the verdict's headline if the fit cannot be trusted; else nothing.
+        doubts: A warning with the verdict's headline if the fit cannot be trusted, which `notes`
+            has too; else empty.
     """
 
     text: str
@@ -80,7 +81,10 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
 
 
 def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
-    """Read a calibration as the slip law of `--slip`, with warnings of changed or lost files."""
+    """Read a calibration as the slip law of `--slip`, with the notes listed at `NamedSlip`.
+
+    Among them are warnings of a `slip.toml` that was changed and of a `posterior.nc` that is lost.
+    """
     read = read_slip_file(path)
     notes = [f"WARNING: {each}" for each in changed_output(read.file)]
     notes += [

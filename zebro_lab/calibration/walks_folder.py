@@ -61,7 +61,7 @@ class StoredWalks:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """A warning if the fit of the walks is not reliable; else nothing."""
+        """A warning if the fit of the walks is not reliable; else empty."""
         if self.posterior.reliable:
             return ()
         draws = counted(round(self.posterior.effective), "effective draw")

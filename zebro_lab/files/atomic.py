@@ -142,7 +142,7 @@ _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Put off SIGINT and SIGTERM until the end of the body.
+    """Put off SIGINT and SIGTERM until the end of the body; if it raises, they are dropped.
 
     Imports of C extensions are put into such a body too, since an exception such as
     KeyboardInterrupt within their initialisation can abort Python.

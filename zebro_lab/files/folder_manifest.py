@@ -76,8 +76,7 @@ def read_folder_manifest(
 def listed_outputs(folder: Path) -> Mapping[str, object]:
     """Return the SHA-256 of each file that the manifest of a result folder lists, by its name.
 
-    Nothing without a readable manifest. Names with a folder, and that of the manifest, are left
-    out.
+    Empty without a readable manifest. Names with a folder, and that of the manifest, are left out.
     """
     try:
         listed = read_json_object(folder / MANIFEST, of="result folder").get("outputs")
@@ -89,7 +88,7 @@ def listed_outputs(folder: Path) -> Mapping[str, object]:
 
 
 def changed_output(file: Path) -> tuple[str, ...]:
-    """Return one sentence if a file of a result folder is not as it was written; else nothing.
+    """Return one sentence if a file of a result folder is not as it was written; else empty.
 
     Nothing is said of a file that no readable manifest lists, or that is missing.
     """
@@ -103,14 +102,17 @@ def changed_output(file: Path) -> tuple[str, ...]:
 
 
 def lost_output(file: Path) -> tuple[str, ...]:
-    """Return one sentence if a file that the manifest beside it lists is missing; else nothing."""
+    """Return one sentence if a file that the manifest beside it lists is missing; else empty."""
     if file.exists() or file.name not in listed_outputs(file.parent):
         return ()
     return (f"{file}, which {MANIFEST} lists, is missing; restore it",)
 
 
 def result_kind(folder: Path) -> str | None:
-    """Return the kind of result that a folder holds; None without a manifest that tells it."""
+    """Return the kind of result that a folder holds; None without a readable manifest of a result.
+
+    That has a text as `kind`, and the keys `schema` and `outputs`.
+    """
     try:
         content = read_json_object(folder / MANIFEST, of="result folder")
     except ZebroLabError:

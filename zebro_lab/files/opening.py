@@ -181,7 +181,10 @@ def parsing(
 
 
 def _descriptor(path: Path, advice: str, fault: Fault) -> int:
-    """Open a regular file without blocking, and return its descriptor; convert the errors."""
+    """Open a regular file without blocking, and return its descriptor.
+
+    Raises `NotFound` if there is no such file, and `fault` if it is not regular or not opened.
+    """
     try:
         _require_regular(path.stat().st_mode, path, fault)  # before it is opened: see above
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)

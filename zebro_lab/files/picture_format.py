@@ -20,7 +20,7 @@ def in_every_format(*stems: str) -> tuple[str, ...]:
 
 
 def format_of(path: Path) -> PictureFormat:
-    """Return the format that a picture's suffix names, in capitals or not.
+    """Return the format that a picture's suffix names, which may be in capitals.
 
     Raises:
         SettingsError: The suffix names no format of `FORMATS`.

@@ -95,7 +95,10 @@ class SettingsTable(TomlTable):
             raise self.fault(str(error), key) from error
 
     def _to_si(self, key: str, found: object, unit: str, usual: float) -> float:
-        """Convert a number, or a text with a unit, to SI; raise an error that names the key."""
+        """Convert a number, or a text with a unit, to SI.
+
+        Raises `SettingsError`, which names the key, for any other value, as `quantity_to_si` does.
+        """
         if isinstance(found, bool) or not isinstance(found, (int, float, str)):
             named = "" if unit == _NO_UNIT else f" in {unit} or a text such as '1 {unit}'"
             raise self.fault(f"found {found!r}; expected a number{named}", key)

@@ -53,7 +53,8 @@ def read_messages(path: Path, types: Collection[str]) -> tuple[list[LoggedMessag
 
     Returns:
         The messages in the order of the log, and why reading stopped before the log's end; None
-        for a log read to its end.
+        for a log read to its end. Of a bag of several MCAP files, all of them by time of logging,
+        and the damage of the first file that is damaged; the others are read nevertheless.
 
     Raises:
         NotFound: The file does not exist, or the package `rosbags` for a bag.

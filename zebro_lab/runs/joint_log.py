@@ -27,9 +27,9 @@ from zebro_lab.tables.raw_table import RawTable
 def joined_readings(table: RawTable, turns: Mapping[str, float]) -> RawTable:
     """Return one row of all legs for each reading of the leg that has the fewest.
 
-    Readings of the other legs are interpolated in time, between two of the same leg. A table with a
-    row of all legs is returned as it is: what is missing in others is a fault of theirs. So is one
-    in which a leg has fewer than two readings, between which nothing can be interpolated.
+    Readings outside the times of another leg's give no row. Angles are unwrapped and interpolated
+    in time, between two of the same leg. A table with a row of all legs is returned as it is: what
+    is missing in others is a fault of theirs. So is one in which a leg has fewer than two readings.
 
     Args:
         table: A row per message, `t` [s], NaN where a message does not hold a leg.
@@ -135,9 +135,8 @@ class JointLog:
 
     Attributes:
         table: A row per message: `t`, its stamp, or log time without one [s], and the position of
-            each joint [rad], NaN where missing, by its name, and by `thetaN` where its name states
-            that it is leg N's.
-        legs: Leg of each joint whose name states it.
+            each joint [rad] by its name, NaN where missing.
+        legs: Leg, 1 to 6, of each joint whose name states it, as by `legs_of_joints`.
         topic: Topic that was read.
     """
 
@@ -186,12 +185,14 @@ def read_joint_log(
 def joint_table(log: JointLog, columns: Columns) -> RawTable:
     """Return the table of a log in which every leg has a column, with a note on the joints' names.
 
+    Messages that hold some of the legs each are joined to rows of all by `joined_readings`.
+
     Args:
         log: The log.
         columns: Column map; a header `thetaN` stands for the joint whose name states leg N.
 
     Raises:
-        DataError: A leg has no joint; names the joints there are.
+        DataError: A leg has no joint; names the joints there are. Or as in `joined_readings`.
     """
     aliases: dict[str, pd.Series] = {
         f"theta{leg}": log.table.columns[name]
@@ -217,7 +218,7 @@ def joint_table(log: JointLog, columns: Columns) -> RawTable:
 
 
 def _with_legs(table: RawTable, legs: Collection[str]) -> RawTable:
-    """Return the rows that have a leg: others drive an arm or wheels on the same topic."""
+    """Return the rows with an angle of one of `legs`: others drive an arm or wheels; note them."""
     angles = np.column_stack([table.columns[name].to_numpy(dtype=float) for name in legs])
     kept = ~np.isnan(angles).all(axis=1)
     if kept.all():
@@ -245,7 +246,7 @@ def _with_positions(
     joints: dict[str, set[str]] | None = None,
     together: frozenset[str] = frozenset(),
 ) -> Parts:
-    """Yield a message that has positions.
+    """Yield topic, header and content (`name`, `position`) of a message that has positions.
 
     Args:
         message: The message.

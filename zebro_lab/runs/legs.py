@@ -61,7 +61,8 @@ def read_leg_log(
 
     Raises:
         NotFound: A file does not exist.
-        SettingsError: The `columns.toml` has an invalid value.
+        SettingsError: The `columns.toml` has an invalid value, or nothing is read from one of the
+            topics to prefer.
         DataError: The file or run cannot be read, a leg is missing, a cell holds no finite number,
             there are not two rows, time does not increase or has a gap that is not bridged, or a
             leg turns by more than 2.5 rad between samples; names the cell, if it is one.
@@ -126,7 +127,10 @@ def require_used(topics: Sequence[str], used: Sequence[str | None]) -> None:
 
 
 def _table_of(path: Path) -> Path:
-    """Return the table at a path: the path itself, or the `path.csv` of a walk folder."""
+    """Return the table at a path: the path itself, or the `path.csv` of a walk folder.
+
+    Raises `DataError` for a folder without one.
+    """
     recover(path)
     if not path.is_dir():
         return path

@@ -74,7 +74,10 @@ def plot_run(
 
 
 def _format_of(file: Path, form: PictureFormat | None) -> PictureFormat:
-    """Return the format that a file's suffix names; raise if it is a folder, or not `form`."""
+    """Return the format that a file's suffix names.
+
+    Raises `SettingsError` if the file is a folder, or its suffix names no format or not `form`.
+    """
     if file.is_dir():
         raise SettingsError(f"found the folder '{file}'; expected a file", key="--out")
     own = format_of(file)

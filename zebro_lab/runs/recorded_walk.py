@@ -94,9 +94,11 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
     """Read roll and pitch of a run; None without log, IMU profile or samples of an IMU.
 
     Of several IMUs (`imu1`, `imu2`, ...) the first that has a profile and samples is read. Samples
-    whose time does not increase are dropped; a damaged log is read up to the damage.
+    whose time does not increase are dropped; a damaged log is read up to the damage, and the log's
+    checksum is not compared.
 
     Raises:
+        NotFound: `run.json` is missing.
         DataError: The log cannot be opened or is not MCAP, or the IMU's profile is invalid, or
             `run.json` is damaged.
     """

@@ -151,7 +151,8 @@ def read_signals(folder: Path) -> RunSignals:
 
     Raises:
         NotFound: The folder is not a run folder, or its log is missing.
-        DataError: Manifest, log or a profile is invalid, a profile is missing, or nothing was read.
+        DataError: Manifest, log or a profile is invalid, a profile is missing, or no stream has a
+            finite value that a profile describes.
     """
     manifest = read_manifest(folder)
     log = folder / LOG_FILE

@@ -25,7 +25,7 @@ from zebro_lab.mcap.raw_log import raw_topic
 from zebro_lab.runs.manifest import RIG, profile_file
 from zebro_lab.runs.slip_rig_table import SlipRigTable
 
-_MANY = 3  # fewest forces per speed sample with which forces are averaged
+_MANY = 3  # forces per speed sample, above which forces are averaged
 
 
 def derive_table(

@@ -147,7 +147,7 @@ def _whole_quaternion(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]
 
 
 def _with_axes(guesses: dict[str, ColumnGuess]) -> dict[str, ColumnGuess]:
-    """Add to `x_m`, `y_m` and `z_m` the doubt which axis is up, where a track has all three axes.
+    """Add to `x_m`, `y_m` and `z_m` the doubt which axis is up, where a `z_m` was found.
 
     Canonical headers and those of ROS, EuRoC and TUM, which have z up, are not doubted.
     """

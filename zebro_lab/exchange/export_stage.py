@@ -81,7 +81,10 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[tuple[Path, ...]
 
 
 def _unended(folder: Path, manifest: RunManifest, end: float | None) -> tuple[str, ...]:
-    """Return a warning if a run has not ended, with its state as in `runs` and its last sample."""
+    """Return a warning if a run has not ended, with its state as in `runs` and its last sample.
+
+    Empty if the run's manifest has an exit status other than `RECORDING`.
+    """
     if manifest.exit_status != RECORDING:
         return ()
     until = "" if end is None else f"; samples go up to {end:.3f} s"

@@ -27,7 +27,7 @@ LAST: Final = datetime(2038, 1, 19, tzinfo=UTC)
 
 
 def _moment(text: str) -> datetime:
-    """Parse the date of `--start` in ISO 8601, with or without a time zone."""
+    """Parse the date of `--start` in ISO 8601, with or without a time zone, or `BadParameter`."""
     try:
         return datetime.fromisoformat(text)
     except ValueError as error:
@@ -118,7 +118,7 @@ class ImportRequest:
 
 
 def _sd(text: str, si_unit: str, *, most: float, key: str) -> float:
-    """Convert a standard deviation to SI; raise unless it is above 0 and at most `most`."""
+    """Convert a standard deviation to SI; `SettingsError` unless above 0 and at most `most`."""
     found = option_to_si(text, si_unit, key=key)
     if not 0 < found <= most:
         raise SettingsError(f"found {text}; expected above 0, at most {most:g} {si_unit}", key=key)

@@ -59,7 +59,7 @@ def write_columns_template(
 
     Raises:
         NotFound: The table file does not exist.
-        DataError: The table cannot be read, or is none.
+        DataError: The table, or the existing `columns.toml`, cannot be read.
         SettingsError: The headers leave the kind open, or the existing file is no TOML.
         AlreadyExists: A `columns.toml` beside the table maps tables of this kind, and `force` is
             not set.
@@ -118,8 +118,12 @@ def write_template(file: Path, kind: Literal["ground", "robot"], *, force: bool 
         kind: What to write.
         force: Whether to replace an existing file.
 
+    Returns:
+        The path of the file.
+
     Raises:
         AlreadyExists: The file exists, and `force` is not set; or it is a folder.
+        OSError: The file cannot be written.
     """
     if file.is_dir():
         raise AlreadyExists(f"{file} is a folder; name the file to write, such as {kind}.toml")

@@ -65,8 +65,9 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
         leg_arc: Angle of the legs' arc [rad].
 
     Raises:
-        SettingsError: The gait is unknown or lacks a given option, or an angle cannot be parsed or
-            is two where the gait has one for all legs.
+        SettingsError: The gait is unknown, its groups of legs cannot be parsed, or it lacks a given
+            option; or an angle cannot be parsed, is other than 0 and below `LEAST_DEG`, or is two
+            where the gait has one for all legs.
         DomainError: The gait is impossible with these parameters.
 
     >>> gait = make_gait(GaitRequest(steering=1.1, touchdown_deg="50"), leg_arc=np.pi)
@@ -137,7 +138,10 @@ def _maxplus(request: GaitRequest, _: float) -> NamedGait:
 
 
 def _groups(request: GaitRequest, _: float) -> NamedGait:
-    """Construct a gait given by groups of legs, such as "{1,4} < {2,5} < {3,6}"."""
+    """Construct a gait given by groups of legs, such as "{1,4} < {2,5} < {3,6}".
+
+    Raises `SettingsError` if they cannot be parsed.
+    """
     try:
         gait = parse_gait(request.name, N_LEGS)
     except DomainError as error:

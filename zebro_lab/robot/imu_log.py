@@ -64,7 +64,9 @@ def imu_of_table(table: RawTable, mapping: Columns) -> ImuLog:
 
     Raises:
         DataError: Time or orientation is missing, a cell does not hold a finite number, time does
-            not increase, or a quaternion's length is not 1 within 0.05; names the cell.
+            not increase, or a quaternion's length is not 1 within 0.05; names the cell. Or, without
+            a stated unit, steps of time are unusual, roll or pitch is over `LARGEST_TILT`, or the
+            specific force seems to be in g.
     """
     t = mapping.times(table, "t", advice=_ADVICE)
     table.require_increasing(mapping.mapped["t"].name, t)
@@ -98,8 +100,8 @@ def _not_read(table: RawTable, mapping: Columns, *, has_yaw: bool) -> Iterator[s
 def _orientation(table: RawTable, mapping: Columns) -> tuple[Array, bool]:
     """Return quaternions, shape (n, 4), w first, and whether the table has a yaw.
 
-    They are those of the table, else made of its roll, pitch and yaw by R = Rz Ry Rx; without a
-    column of yaw it is 0.
+    They are those of the table, which count as with a yaw, else made of its roll, pitch and yaw by
+    R = Rz Ry Rx; without a column of yaw it is 0.
 
     Raises:
         DataError: There is neither a quaternion nor roll and pitch, or their values are impossible.
@@ -148,7 +150,7 @@ def _or_nan(table: RawTable, mapping: Columns, name: str) -> Array:
 
 
 def _require_no_multiples_of_g(table: RawTable, mapping: Columns, force: list[Array]) -> None:
-    """Raise if a specific force without a stated unit seems to be in g instead of m/s^2.
+    """Raise `DataError` if a specific force without a stated unit seems to be in g, not m/s^2.
 
     That is if the median of its length is that of a body at rest in g, by `is_in_g`.
     """

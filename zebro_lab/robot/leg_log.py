@@ -146,7 +146,7 @@ def legs_of_table(
         DataError: A column or value is missing, there are fewer than two rows, time does not
             increase or has a gap that `bridged_gaps` refuses, or a leg turns by more than 2.5 rad
             between samples, or by more than pi/2 where angles are wrapped to one turn, or jumps by
-            more than a turn; names the cell.
+            more than that on top of one turn; names the cell.
     """
     t = mapping.times(table, "t", advice=_ADVICE)
     angles = [_angle(table, name, mapping) for name in ANGLES]

@@ -31,7 +31,8 @@ def leg_warnings(
     """Return a warning of each fault that leg angles seem to have, or a note on turning back.
 
     Each line says what was seen, what was expected, and the change that would make it consistent.
-    Nothing is returned if the legs turn too little to tell.
+    If the legs turn faster than `_FASTEST`, the warning of that is the only one. Empty if they turn
+    too little to tell.
 
     Args:
         log: Leg angles over time, as in the log.
@@ -139,7 +140,7 @@ def _repair(order: Sequence[int]) -> str:
 
 
 def _backward(motion: LegMotion) -> tuple[str, ...]:
-    """Return a note on which legs turn backwards; nothing if none does."""
+    """Return a note on which legs turn backwards; empty if none does."""
     backward = tuple(int(leg) + 1 for leg in np.nonzero(motion.direction < 0)[0])
     if not backward:
         return ()

@@ -199,7 +199,10 @@ def _robot(top: SettingsTable, legs: SettingsTable) -> Robot:
 
 
 def _speed_limit(legs: SettingsTable) -> float | None:
-    """Return the largest speed of a leg [rad/s]; None if none is given."""
+    """Return the largest speed of a leg [rad/s]; None if none is given.
+
+    Raises `SettingsError` for less than `_SLOWEST_DEG`, which is probably in another unit.
+    """
     key = "speed_limit_deg_per_s"
     if key not in legs:
         return None
@@ -213,7 +216,10 @@ def _speed_limit(legs: SettingsTable) -> float | None:
 
 
 def _hips(hips: SettingsTable) -> np.ndarray:
-    """Return the position of each hip, shape (6, 3) [m]; those not given are the thesis's."""
+    """Return the position of each hip, shape (6, 3) [m]; those not given are the thesis's.
+
+    Raises `SettingsError` for a hip that is not a position or on the wrong side of the body.
+    """
     places = Robot().hips.copy()
     for leg in range(1, N_LEGS + 1):
         if str(leg) in hips:
@@ -235,7 +241,7 @@ def _require_side(hips: SettingsTable, leg: int, place: np.ndarray) -> None:
 
 
 def _marker(marker: SettingsTable) -> Marker:
-    """Read the section of the marker; all but its position has a default."""
+    """Read the section of the marker; `SettingsError` without `position`, the one required key."""
     if "position" not in marker:
         raise marker.fault(
             "is missing; give the marker's centre in the body frame as [x, y, z] in m", "position"

@@ -30,6 +30,9 @@ class _Strict:
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse arguments as Typer does, after a check that no option is given twice.
 
+        To the message of a Typer error is added which option was probably meant, or what replaced
+        it; a value of another type is reported with the type expected.
+
         Raises:
             BadParameter: An option that takes one value is given more than once.
         """

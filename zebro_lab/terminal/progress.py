@@ -93,7 +93,7 @@ class ProgressLines:
         self._began = self._said = clock()
 
     def show(self, what: str, fraction: float | None) -> None:
-        """Print a line if the last one is `LINE_EVERY` ago."""
+        """Print a line if the last one, or the beginning without one, is `LINE_EVERY` ago."""
         now = self._clock()
         if what != self._what:
             self._what, self._began = what, now

@@ -63,7 +63,7 @@ class RigidPath:
 
         Args:
             plane: Two of the axes x, y and z, such as "xy".
-            forward: Axis of the body that points ahead.
+            forward: Axis of the body that points ahead, "x", "y" or "z".
 
         Returns:
             Poses whose x and y are the plane's first and second axis; headings are unwrapped, NaN

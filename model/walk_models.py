@@ -136,7 +136,7 @@ def decides_contact(run: ModelRun, model: str) -> str:
 
     Args:
         run: Inputs of the model.
-        model: Name of the model.
+        model: Name of the model, a key of `MODELS`.
 
     Returns:
         "force" of the model "dynamics"; "rest", the legs on which the robot rests, of models

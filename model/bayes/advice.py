@@ -120,7 +120,7 @@ class ExcludeRuns(Advice):
     """Advice to leave out runs that do not belong to the others, and to fit again.
 
     Attributes:
-        runs: Names of the runs, at least one.
+        runs: Names of the runs; empty where a check passed that would give this advice.
     """
 
     runs: tuple[str, ...]
@@ -129,7 +129,7 @@ class ExcludeRuns(Advice):
 def measure_slips(
     reason: str, *, loads: Array, slips: Array, definition: SlipDefinition
 ) -> MeasureSlips:
-    """Return advice to measure slip ratios, limited to those that a rig can hold.
+    """Return advice to measure slip ratios, clipped to `_MEASURABLE`, in the material definition.
 
     Args:
         reason: What the data lack.

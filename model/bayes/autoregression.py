@@ -42,7 +42,8 @@ def whitened(
 def run_variances(rest: Array, run: NDArray[np.intp], n_runs: int) -> Array:
     """Estimate the variance of the noise in each run, shape (n_runs,) [N^2].
 
-    It is at least a thousandth of the median run's, also for a run without rows.
+    It is at least a thousandth of the median over runs of two rows or more, also for a run without
+    rows; without such runs the median counts as 1.
 
     Args:
         rest: Residuals less the mean of their run, shape (n,) [N].

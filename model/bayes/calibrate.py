@@ -131,10 +131,12 @@ def calibrate(
 
     Raises:
         InsufficientData: There are fewer samples than a law's parameters plus two, traction is
-            constant, or no load exceeds the load cell's zero stability.
-        DomainError: A force exceeds `MOST_FORCE` or is NaN, or a stated prior cannot be used.
+            constant, no load exceeds the load cell's zero stability, or with `scored` there is one
+            run.
+        DomainError: A force exceeds `MOST_FORCE` or is NaN, traction opposes the slip, or a stated
+            prior cannot be used.
         FitError: A law has no valid curve or no mode, too few of the sampler's starting points lie
-            inside the support, or a numerical routine failed.
+            inside the support, `earlier` has another density, or a numerical routine failed.
         FitStopped: The watcher requested a stop.
     """
     rng = np.random.default_rng(settings.seed)
@@ -189,8 +191,8 @@ def _true_radii(
 ) -> tuple[SlipSamples, RigErrors, RunOut | None]:
     """Correct slip for the run-out of discs whose angles are recorded, if that predicts better.
 
-    Returns the samples, what of the rig's errors remains, and the run-out. Raises `FitStopped` if a
-    stop is requested.
+    Returns the samples, what of the rig's errors remains, and the run-out, None if nothing tells
+    it. Raises `FitStopped` if a stop is requested.
     """
     if samples.angles is None:
         return samples, rig_errors, None

@@ -49,7 +49,7 @@ class CrossValidation:
     def predict(self, samples: SlipSamples, law: SlipLaw) -> Array:
         """Predict every sample's measured traction by the fit without its run, shape (n,) [N].
 
-        Run offset and crosstalk are left out, as by `measured_force`.
+        Run offsets are left out, as by `measured_force`.
 
         Args:
             samples: The samples, n of them, of the same runs in the same order.
@@ -66,7 +66,7 @@ class CrossValidation:
 def measured_force(
     law: SlipLaw, values: Array, slip: Array, normal_force: Array, definition: SlipDefinition
 ) -> Array:
-    """Predict measured traction from measured slip and load, without run offset [N].
+    """Predict measured traction from measured slip and load, without run offset, shape (n,) [N].
 
     As in `model.bayes.likelihood`, crosstalk counts to first order: the predicted traction, not the
     measured one, corrects the load.

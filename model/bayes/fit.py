@@ -102,8 +102,8 @@ def prepare_fit(
         load_cell: Prior knowledge of the load cell.
         rng: Source of randomness of the starting points.
         rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
-        block_choice: How samples become blocks; found from the residuals when None, and for a
-            length that is given.
+        block_choice: How samples become blocks, or the number of samples in a block. That is found
+            from the residuals when None, the noise of slip also for a number.
         validate: Whether to cross-validate, which a single run never is.
         executor: Where the folds of the cross-validation are fitted; None for here.
         stated: Priors that replace default ones; the block length is chosen without them.
@@ -113,7 +113,8 @@ def prepare_fit(
     Raises:
         InsufficientData: There are fewer samples than the law's parameters plus two, traction is
             constant, or no load exceeds the load cell's zero stability.
-        DomainError: A force exceeds `MOST_FORCE` or is NaN, or a stated prior cannot be used.
+        DomainError: A force exceeds `MOST_FORCE` or is NaN, traction opposes the slip, or a stated
+            prior cannot be used.
         FitError: The priors allow no valid curve, no curve comes near the forces, no start of a
             search for a mode lies inside the support, or a numerical routine failed.
     """
@@ -194,6 +195,9 @@ def validated(fit: PreparedFit, *, executor: Executor | None = None) -> Prepared
     Args:
         fit: The fit, with or without cross-validation.
         executor: Where the folds are fitted; None for here.
+
+    Raises:
+        FitError: Without a fold's runs the mode lies outside the posterior's support.
     """
     if fit.cross_validation is not None or fit.posterior.blocks.n_runs < 2:
         return fit
@@ -221,7 +225,7 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
     Raises:
         InsufficientData: Traction is constant, or no load exceeds the cell's zero stability.
         DomainError: The absolute value of a force exceeds `MOST_FORCE`, or a force is NaN; or
-            traction opposes the slip in nine of ten runs.
+            traction opposes the slip in nine of ten runs that slip.
     """
     loads, traction = samples.normal_force, samples.traction_force
     for name, force in (("normal", loads), ("traction", traction)):

@@ -84,7 +84,7 @@ class LawScores:
         levels: Loads that were left out, shape (n_levels,) [N].
         best: Index of the law that predicts left-out runs best.
         chosen: Index of the law that is fitted: the first of `told_together`.
-        told_together: Indices of the laws that no other one predicts clearly better than.
+        told_together: Indices of the laws that `choose_law` did not drop as clearly worse.
     """
 
     laws: tuple[LawScore, ...]
@@ -118,7 +118,7 @@ def _standard_error(differences: Array) -> float:
 
 
 def load_groups(blocks: SlipBlocks) -> tuple[NDArray[np.intp], Array]:
-    """Sort runs by the load that was set.
+    """Group runs by the one of `load_levels` that is nearest to the mean load of their blocks.
 
     Args:
         blocks: The block means.

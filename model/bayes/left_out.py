@@ -188,6 +188,9 @@ def _folds(groups: NDArray[np.intp]) -> list[NDArray[np.intp]]:
 def refit_without(task: Refit) -> Refitted:
     """Compute log densities of left-out runs by draws of the posterior without them.
 
+    Draws at which the law is not valid at one of the loads of all data are left out, unless all are
+    such.
+
     Args:
         task: The refit.
 

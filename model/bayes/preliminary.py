@@ -28,7 +28,9 @@ def least_squares_values(
 ) -> Array:
     """Fit a law's parameters to block means by robust least squares from many starts.
 
-    Of `N_TRIALS` prior draws and the prior median the best `N_CLIMBS` are optimised.
+    Of `N_TRIALS` prior draws and the prior median, as far as valid, the best `N_CLIMBS` are
+    optimised. Of the valid results, and the best draw, the one with the least sum of absolute
+    scaled residuals and coordinates is returned.
 
     Args:
         blocks: The block means.

@@ -34,9 +34,9 @@ class Residuals:
         inside: Fraction of run means within their predictive 90 % interval [-].
         inside_p: Two-sided binomial p-value of that fraction against 90 % [-].
         misfit: Root-mean-square residual that is a function of slip, over the largest predicted
-            traction at its load: of all loads together, or of the worst load if that is
-            significant. Repeated measurements do not average it away; 0 if no two runs share a slip
-            and load [-].
+            traction at its load: of all loads together, or if some misfits are significant the
+            largest of these, over all loads or at one. Repeated measurements do not average it
+            away; 0 if no two runs share a slip and load [-].
         misfit_p: p-value of the F test of `misfit` against the scatter between runs, of a single
             load times the number of loads; NaN if no two runs share a slip and load [-].
         detectable: Misfit over all loads that would have the p-value `MISFIT_P`, at the scatter
@@ -102,7 +102,8 @@ def covariance_factors(
 ) -> list[Array]:
     """Return the lower Cholesky factor of each run's covariance, shape (blocks, blocks) [N].
 
-    It is the covariance of noise, run offset and slip errors.
+    It is the covariance of noise, run offset and slip errors; `LinAlgError` is raised if one is
+    singular.
 
     The matrix is built densely from its definition and not by the likelihood's filter, as a check
     of the filter.
@@ -155,7 +156,8 @@ def far_runs(score: Array) -> NDArray[np.intp]:
     The distance is that from the median score in robust standard deviations, 1.4826 times the
     median absolute deviation: a few strange runs widen the predictive intervals of all, and then
     lie inside their own. Where one is farther than 5 + 60 / n, which of n runs of white scores
-    happens less than once in 1,000, all that are half as far are returned; else none.
+    happens less than once in 1,000, and its absolute score is above `FAR_SCORE`, the indices of all
+    that are farther than half of that limit are returned; else none.
 
     Args:
         score: Score of each run, as `Residuals.run_score`, shape (n_runs,) [-].
@@ -216,10 +218,11 @@ def _structure(blocks: SlipBlocks, residual: Array, predicted: PredictedForces) 
 
     Returns:
         What repeats, over the largest predicted traction; 0 and NaN if no group has two runs. It is
-        that of one load alone if that is larger and significant: over all loads together the small
-        ones hardly count. For one load the largest traction is that load times the largest ratio
-        of traction to load at any, and the p-value is multiplied by the number of loads.
-        `detectable` is that over all loads.
+        the largest significant misfit of all analyses, over all loads and at each, since over all
+        loads together the small ones hardly count; if none is significant, that over all loads. For
+        one load the largest traction is that load times the largest ratio of traction to load at
+        any, and the p-value is multiplied by the number of loads. `detectable` is that over all
+        loads.
     """
     force, slope = predicted.force.mean(axis=0), predicted.slope.mean(axis=0)
     levels = load_levels(blocks)
@@ -248,7 +251,8 @@ def _repeating(
     Where runs cross two groups or more on average, as sweeps do, the first is two-way: each run's
     offset and slip error (a multiple of the curve's slope) are taken out. The last is one-way:
     there the means of one run share its offset and count as one for the degrees of freedom. An
-    analysis without two runs in a group is left out.
+    analysis without a degree of freedom left for the scatter, or for the groups, is left out; the
+    list is empty if all are, or without values.
     """
     if not len(values):
         return []
@@ -281,7 +285,7 @@ def _analysed(values: Array, design: Array, taken: int, shared: float) -> _Repea
         shared: Number of values that count as one, by which degrees of freedom are divided.
 
     Returns:
-        The result; None if no degree of freedom is left.
+        The result; None if no degree of freedom is left for the rest, or none for the groups.
     """
     solution, _, rank, _ = np.linalg.lstsq(design, values, rcond=1e-9)
     spare = len(values) - taken - int(rank)

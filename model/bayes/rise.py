@@ -35,8 +35,9 @@ def sampled_rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> SampledRise
     """Find the largest gap in the tested slips below the peak, and the slips that would fill it.
 
     Slips count in units of the peak's slip at their load, those of all loads and of either sign
-    together, because the law says how the curves of several loads belong together. Beyond the
-    largest tested slip there is no gap: a curve may be wanted up to there.
+    together, because the law says how the curves of several loads belong together. The peak's slip
+    is the median of its draws; the curve has no peak where that is infinite at all loads. Beyond
+    the largest tested slip there is no gap: a curve may be wanted up to there.
 
     Args:
         blocks: The block means.
@@ -57,7 +58,9 @@ def sampled_rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> SampledRise
 
 
 def _further(peaks: Array, slip: Array) -> Array:
-    """Space slips evenly in their logarithm over the rise at the smallest to the largest peak.
+    """Space `SLIPS` slips evenly in their logarithm over the rise at the smallest to largest peak.
+
+    They end at the largest tested slip if that is before `_LAST` of the largest peak.
 
     Args:
         peaks: Draws of the peak's slip at loads where most of them are finite, shape (w, m) [-].

@@ -76,7 +76,7 @@ class RunOut:
 
     Attributes:
         discs: The discs.
-        gain: Log density of left-out runs with the correction less that without [-].
+        gain: Log density of left-out runs with the correction less that without; 0 of one run [-].
         standard_error: Its standard error, from the scatter between runs [-].
         scatter: Scale of slip that the speeds do not show, once it is corrected [-].
     """
@@ -115,7 +115,7 @@ def find_run_out(
         rng: Source of randomness of the fits of the curve.
 
     Returns:
-        The run-out; None where no angle is recorded, or nothing within runs tells it.
+        The run-out; None without angles, with a stated run-out of 0, or if `_system` is None.
     """
     angles = samples.angles
     if angles is None or rig_errors.run_out <= 0:
@@ -159,7 +159,7 @@ def _corrected(samples: SlipSamples, coefficients: Array) -> SlipSamples:
 
 
 def _recorded(angles: DiscAngles) -> list[tuple[str, Array, float]]:
-    """Return name, angles, and derivative of relative radius by radius with sign, of each disc."""
+    """Return name, angles, and signed derivative of relative radius by radius of recorded discs."""
     both = (
         ("leg", angles.leg, 1 / angles.radius_leg),
         ("ground", angles.ground, -1 / angles.radius_ground),
@@ -168,7 +168,7 @@ def _recorded(angles: DiscAngles) -> list[tuple[str, Array, float]]:
 
 
 def _waves(samples: SlipSamples, slip: Array) -> Array:
-    """Compute the derivative of true slip by each coefficient, shape (n, m) [1/m]."""
+    """Compute the derivative of true slip by each coefficient, (n, m); (n, 0) if none [1/m]."""
     if samples.angles is None:
         return np.zeros((len(samples), 0))
     lever = slip_per_radius_error(slip, samples.definition)
@@ -181,13 +181,13 @@ def _waves(samples: SlipSamples, slip: Array) -> Array:
 
 
 def _length(samples: SlipSamples, angles: DiscAngles) -> int:
-    """Return the samples of a mean in which a disc, at its 90 % quantile of speed, turns `TURN`."""
+    """Return in how many samples the disc of the larger 90 % quantile of speed turns `TURN`."""
     inside = np.diff(samples.run) == 0
     fastest = 0.0
     for _, angle, _ in _recorded(angles):
         step = np.abs((np.diff(angle)[inside] + np.pi) % (2 * np.pi) - np.pi)
         fastest = max(fastest, float(np.quantile(step, 0.9)) if len(step) else 0.0)
-    return max(1, int(TURN / fastest)) if fastest > 0 else len(samples)
+    return max(1, int(TURN / fastest)) if fastest > 0 else len(samples)  # all if none turns
 
 
 @dataclass(frozen=True)
@@ -216,7 +216,7 @@ def _posterior(
 def _system(
     samples: SlipSamples, posterior: SlipPosterior, curve: Laplace, length: int
 ) -> _System | None:
-    """Build the equations on means of `length` samples; None where no run has several."""
+    """Build the equations on means of `length` samples; None if no run has over `MEMORY` + 1."""
     blocks = block_means(samples, length)
     enough = np.bincount(blocks.run)[blocks.run] > MEMORY + 1
     if not enough.any():
@@ -331,7 +331,7 @@ def _with_prior(columns: Array, run: NDArray[np.intp], prior_sd: Array, m: int) 
 
 
 def _fit_of(products: Array, known: Array, prior: Array, used: NDArray[np.bool_]) -> Array:
-    """Compute log densities (runs,) by runs' Gram matrices, fitted to the sum `known` of others."""
+    """Compute runs' log densities up to a constant, (runs,), by a fit to Gram matrix `known`."""
     mean = np.zeros(len(used))
     inside = np.ix_(used, used)
     mean[used] = np.linalg.solve((prior + known[:-1, :-1])[inside], known[:-1, -1][used])
@@ -341,7 +341,7 @@ def _fit_of(products: Array, known: Array, prior: Array, used: NDArray[np.bool_]
 
 
 def _remaining(angles: DiscAngles, discs: tuple[DiscRunOut, ...], errors: RigErrors) -> float:
-    """Return the standard deviation of slip that run-out still makes once it is corrected [-]."""
+    """Return the sd of slip that corrected run-out makes, at most `errors.slip_scatter` [-]."""
     known = {disc.disc: float(np.sum(disc.sd**2)) for disc in discs}
     total = 0.0
     for name, radius in (("leg", angles.radius_leg), ("ground", angles.radius_ground)):

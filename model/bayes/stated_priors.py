@@ -141,8 +141,9 @@ def with_stated(
         one.
 
     Raises:
-        DomainError: A parameter has a prior of its own and one of the earlier posterior, that has
-            too few draws, or over 1 % of its draws lie outside the default prior's support.
+        DomainError: A parameter has a prior of its own and one of the earlier posterior. Or fewer
+            than `FEWEST_DRAWS` of the earlier posterior's draws lie inside the default priors'
+            support, or over 1 % outside.
     """
     changed = {**priors, **{k: v for k, v in stated.single.items() if k in priors}}
     earlier = stated.earlier
@@ -163,7 +164,10 @@ def with_stated(
 
 
 def _coordinates(priors: Mapping[str, Prior], earlier: EarlierPosterior) -> Array:
-    """Map draws of an earlier posterior to standard normal coordinates, shape (n, m)."""
+    """Map draws of an earlier posterior to standard normal coordinates, shape (n, m).
+
+    Draws outside the support are left out; `DomainError` as of `with_stated`.
+    """
     with np.errstate(all="ignore"):
         z = np.column_stack([prior.coordinate(earlier.draws[n]) for n, prior in priors.items()])
     inside = np.isfinite(z).all(axis=1)

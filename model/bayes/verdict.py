@@ -59,7 +59,11 @@ class Verdict:
 
     @property
     def state(self) -> State:
-        """How far the fit can be trusted: no better than what was tested."""
+        """How far the fit can be trusted: the worst state that its checks give.
+
+        Not converged if a check of convergence failed, not trustworthy if one of `trust` failed, as
+        tested if one of these is not testable, else trustworthy.
+        """
         if not self.converged:
             return State.NOT_CONVERGED
         if any(check.failed for check in self.trust):
@@ -88,7 +92,7 @@ class Verdict:
 
     @property
     def causes(self) -> tuple[str, ...]:
-        """What is probably wrong with the data of a fit that failed a check, or nothing.
+        """What is probably wrong with the data, up to `MOST_CAUSES`; empty unless `trust` failed.
 
         Faults of single samples and runs come first; then the terms that explain most, which may
         be two that cannot be told apart.

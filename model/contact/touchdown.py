@@ -29,10 +29,12 @@ class Touchdown:
         t: Time of the first sample in contact; NaN if the leg does not touch in this turn [s].
         angle: Leg angle at that sample, from -pi/2 to 3/2 pi [rad].
         asked_t: Time at which the gait asked for touchdown; NaN where it is not known [s].
-        asked_angle: Leg angle that the gait asked for at touchdown [rad].
+        asked_angle: Leg angle that the gait asked for at touchdown, less the same whole turns as
+            `angle`; NaN where it is not known [rad].
         liftoff_t: Time of the first sample after the turn's last contact; NaN if the walk ended
             before [s].
-        liftoff_angle: Leg angle at that sample [rad].
+        liftoff_angle: Leg angle at that sample, less the same whole turns as `angle`, so that it is
+            beyond 3/2 pi in the next turn; NaN as `liftoff_t` [rad].
         contacts: Number of times that the leg touched down in this turn.
     """
 
@@ -176,7 +178,7 @@ def _turn(angle: ArrayLike) -> NDArray[np.intp]:
 
 
 def _within(angle: float, turn: int) -> float:
-    """Return an unwrapped angle less its whole turns, from -pi/2 to 3/2 pi [rad]."""
+    """Return an unwrapped angle less `turn` turns: from -pi/2 to 3/2 pi in that turn [rad]."""
     return float(angle - 2 * np.pi * turn)
 
 

@@ -33,6 +33,8 @@ class Target:
     def log_sd(self, covariance: Array) -> Array:
         """Compute the log standard deviation of each part around each draw, shape (m, parts).
 
+        Variances below 1e-300 count as that.
+
         Args:
             covariance: Covariance of the coordinates around each draw, shape (m, d, d).
         """
@@ -51,6 +53,9 @@ def parameter_target(posterior: SlipPosterior, z: Array, name: str) -> Target:
         posterior: Law and priors, not straightened.
         z: Draws of the coordinates, shape (m, d).
         name: Name of the parameter.
+
+    Raises:
+        ValueError: The posterior has no parameter of this name.
     """
     names = [p.name for p in posterior.parameters]
     parameter = posterior.parameters[names.index(name)]
@@ -71,7 +76,8 @@ def force_target(
         loads: Normal forces, shape (l,) [N].
 
     Raises:
-        InsufficientData: The law has hardly any traction at one of the slips and loads.
+        InsufficientData: At one of the slips and loads the traction around a draw is below `FLAT`
+            of the load.
     """
     slip, load = (each.ravel() for each in np.meshgrid(slips, loads))
     size, rows = force_rows(posterior, z, slip=slip, load=load)

@@ -177,7 +177,7 @@ class InexactLog:
 
     @cached_property
     def _legs(self) -> list[LegLines | SmoothedLeg]:
-        """Lines of each leg, or the smooth angles of a noisy one that they do not fit."""
+        """Lines of each leg, or smooth angles of one off its lines by over `UNEVEN` noises."""
         found: list[LegLines | SmoothedLeg] = []
         for leg, theta, sd in zip(self._lines, self.theta.T, self._noise, strict=True):
             off = theta - np.interp(self.t, *leg.corners(None))

@@ -118,7 +118,7 @@ def _zero_fault(motion: LegMotion, mirrored: Legs) -> ZeroFault | None:
 
 
 def _may_be_a_turn(offset: Array, far: Legs) -> bool:
-    """Return whether legs of one side alone are far off, by what is no multiple of 90 degrees.
+    """Return whether legs of one side alone are far off, not all by a multiple of 90 degrees.
 
     In the sharpest turns the outer legs sweep over more than half a turn on the ground, and are
     slower in flight.

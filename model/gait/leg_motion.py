@@ -53,7 +53,7 @@ class LegMotion:
 
     @property
     def turning(self) -> NDArray[np.bool_]:
-        """Whether each leg turned far enough to be judged, shape (6,)."""
+        """Whether each leg turned by `FEWEST` turns, so that it can be judged, shape (6,)."""
         return self.turns >= FEWEST
 
 

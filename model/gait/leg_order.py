@@ -53,7 +53,9 @@ class OrderFault:
 
 
 def order_fault(motion: LegMotion, direction: Array) -> OrderFault | None:
-    """Return what is suspected of the order of legs; None without a steady gait of all six.
+    """Return what is suspected of the order of legs; None if it, or no other order, is plausible.
+
+    None also without a steady gait of all six legs, with known phases and middles of stance.
 
     Orders that differ by exchanging left and right, or front and rear, look alike.
 

@@ -82,7 +82,8 @@ class PathErrors:
         alignment_shift: Distance by which alignment moved the first predicted pose [m].
         relative: Relative pose errors, one for each of `DISTANCES`.
         radius: Turning radius of the predicted and of the tracked path, positive to the left;
-            infinite if straight, NaN if a heading is missing or for fewer than four poses [m].
+            as by `fitted_radius` infinite if headings span less than 5 degrees, NaN if the path is
+            no circle, a heading is missing or for fewer than four poses [m].
         yaw_rate: Mean yaw rate of the predicted and of the tracked path, positive to the left; NaN
             if a heading is missing [rad/s].
     """

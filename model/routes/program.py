@@ -119,6 +119,9 @@ def lay_out(
         progress: Called after every cycle with the share of the program that is laid out; it may
             raise an exception to stop.
 
+    Returns:
+        The leg angles of the program, and the end of each segment in their order.
+
     Raises:
         DomainError: No segment has a gait, a segment does not end within 1000 cycles, or needs
             walking without a slip law, or the program is too long.
@@ -154,7 +157,10 @@ def lay_out(
 def _laid_out(
     legs: ProgramLegs, segment: Segment, walk: GrowingWalk | None, added: _Added
 ) -> tuple[ProgramLegs, SegmentEnd]:
-    """Return the program with one more segment, by the way in which it ends, and its end."""
+    """Return the program with one more segment, by the way in which it ends, and its end.
+
+    Raises `DomainError` if `MOST_CYCLES` do not reach that, or it needs walking and `walk` is None.
+    """
     gait, until = segment.gait, segment.until
     if gait is None or until is None:
         legs, cycles, missed = legs.with_stand(segment.stand), 0, 0.0
@@ -230,7 +236,7 @@ def _turned(
 
     Returns:
         The program, the number of cycles added, and how much further than asked for the robot
-        turned [rad].
+        turned, negative if less [rad].
     """
     start, turned, tries = walk.pose(legs)[2], 0.0, 0
     for cycles in range(1, MOST_CYCLES + 1):

@@ -63,7 +63,7 @@ def measured_stride(stepping: Stepping, around: Surroundings) -> Stride:
     """Measure how far strides lead, straight ahead and on the spot, by walking some of each.
 
     Raises:
-        DomainError: The gait is impossible, or leads nowhere.
+        DomainError: The gait is impossible or leads nowhere, or there is no slip law.
         WalkError: The walk diverged.
     """
     straight = walked_end([Part(0.0, 1.0, _MEASURED)], stepping, around)
@@ -94,6 +94,7 @@ def stop_turn_walk(
         The manoeuvre; None if the robot is at the goal already.
 
     Raises:
+        DomainError: A gait is impossible, or there is no slip law.
         WalkError: The walk diverged.
     """
     bearing = float(np.arctan2(goal.y, goal.x)) if goal.x or goal.y else 0.0
@@ -120,6 +121,7 @@ def curve(goal: Goal, stride: Stride, stepping: Stepping, around: Surroundings) 
         The manoeuvre; None if the robot is at the goal already.
 
     Raises:
+        DomainError: A gait is impossible, or there is no slip law.
         WalkError: The walk diverged.
     """
     arcs, bends = _arcs(goal, stride.arm)

@@ -71,7 +71,7 @@ class Farthest:
     """Where a curve is farthest from a band, and how much of it lies outside.
 
     Attributes:
-        outside: Share of the points at which the curve lies outside the band [-].
+        outside: Share of the points where the curve is known at which it is outside the band [-].
         load: Index of the load at which it is farthest.
         slip: Index of the slip ratio there.
         ratio: Distance from the mean over half the width of the band there; above 1 outside.
@@ -86,7 +86,7 @@ class Farthest:
 
     @property
     def inside(self) -> bool:
-        """Whether the curve lies inside the band at every point."""
+        """Whether the curve lies inside the band at every point at which it is known."""
         return self.outside == 0
 
 

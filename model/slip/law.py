@@ -96,6 +96,8 @@ class SlipLaw(Protocol):
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
         """Compute the slip ratio at which the force is largest, infinite where it never falls [-].
 
+        The result broadcasts against `load` and `values`.
+
         Args:
             load: Normal force, positive [N].
             values: Parameter values, one entry a parameter.

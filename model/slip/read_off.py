@@ -95,6 +95,7 @@ def read_off(slip: ArrayLike, force: ArrayLike) -> ReadOff:
     Raises:
         DomainError: The arrays are no curve of `FEWEST_SAMPLES` or more, have no positive peak
             inside their range, or end before twice the peak's slip.
+        RuntimeError: Least squares did not converge (raised by scipy).
     """
     kappa, f = _as_curve(slip, force)
     top = int(np.argmax(f))
@@ -134,6 +135,9 @@ def _least_squares(
 
     Returns:
         The coefficients with their covariance, and the root-mean-square residual [-].
+
+    Raises:
+        RuntimeError: Least squares did not converge (raised by scipy).
     """
     from scipy.optimize import OptimizeWarning, curve_fit
 

@@ -103,7 +103,7 @@ class SidedLaw:
         return self._peak(1.0, load, values)
 
     def braking_peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio of the braking peak, which is negative [-].
+        """Compute the slip ratio of the braking peak, negative, -inf without one [-].
 
         Args:
             load: Normal force, positive [N].
@@ -118,7 +118,7 @@ class SidedLaw:
 
 
 def braking_peak_slip(law: SlipLaw, load: ArrayLike, values: Values) -> Array:
-    """Compute the slip ratio of a law's braking peak, which is negative [-].
+    """Compute the slip ratio of a law's braking peak, negative, -inf without one [-].
 
     Args:
         law: The slip law.

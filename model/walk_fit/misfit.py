@@ -309,7 +309,7 @@ class StateToWalk:
 
 
 def walk_state(task: StateToWalk) -> Array:
-    """Walk a state of the legs; see `model.walk.ensemble.walk_draw`.
+    """Walk a state of the legs; result and errors are those of `model.walk.ensemble.walk_draw`.
 
     Args:
         task: The state.

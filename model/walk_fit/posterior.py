@@ -42,7 +42,7 @@ class Contraction:
 
     @property
     def contraction(self) -> float:
-        """1 minus posterior over prior variance; negative where the variance grew [-]."""
+        """1 minus posterior over prior variance; negative if it grew, 0 if not fitted [-]."""
         return 0.0 if self.prior_sd == 0 else 1 - (self.sd / self.prior_sd) ** 2
 
     @property

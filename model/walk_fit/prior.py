@@ -44,7 +44,10 @@ class WrongLeg:
     walk: int | None = None
 
     def concerns(self, walk: int | None) -> bool:
-        """Return whether the leg has the offset in walk number `walk`; None is a walk to come."""
+        """Return whether the leg has the offset in walk number `walk`.
+
+        None is a walk to come, in which only a leg wrongly mounted in all walks has it.
+        """
         return self.walk is None or self.walk == walk
 
 
@@ -104,7 +107,10 @@ class WalkPrior:
     spread: ModelSpread = field(default_factory=ModelSpread)
 
     def __post_init__(self) -> None:
-        """Check that standard deviations are positive, and `wrong` is above 0 and below 1."""
+        """Check that `wrong` is above 0 and below 1, and standard deviations are positive.
+
+        That of lateral traction may be 0.
+        """
         names = (*NAMES, "wrong_leg")
         bad = [
             f"{name} {sd:g}"

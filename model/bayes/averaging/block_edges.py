@@ -63,12 +63,15 @@ def _jumps(slip: Array, starts: NDArray[np.intp], noise: Array) -> NDArray[np.in
     r"""Find the first sample behind the jump in each block that has one.
 
     A cut behind p of n samples, whose deviations from the block's mean add up to S, takes
-    :math:`S^2 n / (p (n - p))` away from their sum of squares. A block has a jump if that sum is
-    more than noise explains, and its best cut leaves less than `LEFT_OVER` of what is beyond noise.
+    :math:`S^2 n / (p (n - p))` away from their sum of squares. A block of `FEWEST` samples or more
+    has a jump if that sum is larger than noise makes it with the probability `BY_CHANCE`, and its
+    best cut takes more than `LEAST_JUMP` squared away and leaves less than `LEFT_OVER` of what is
+    beyond noise.
 
     Noise alone makes one cut of many look good where a speed ripples. Cuts that noise has chosen
     select the measured slips of their blocks by their errors, which biases the curve's rise. So a
-    jump is also too large for noise to hide what a cut leaves, or its block spreads unusually far.
+    block's sum beyond noise is also so large that `LEFT_OVER` of it exceeds `SURE` standard
+    deviations of the noise's own sum, or is over `UNUSUAL` times that of the median block.
 
     Args:
         slip: Slip ratios, shape (n_samples,) [-].

@@ -184,6 +184,6 @@ def _moments(samples: SlipSamples, starts: NDArray[np.intp]) -> _Moments:
 
 
 def _skewness(third_moment: Array, variance: Array) -> Array:
-    """Compute skewness from third moment and variance of each block; 0 where nothing varies."""
+    """Compute each block's skewness; 0 where the variance is below 1e-12 of the largest block's."""
     varies = variance > 1e-12 * variance.max(initial=1e-300)
     return np.where(varies, third_moment / np.where(varies, variance, 1.0) ** 1.5, 0.0)

@@ -41,12 +41,12 @@ class FastWander:
 
     @property
     def used(self) -> float:
-        """Share that blocks are made with: 0 unless the force shows wander beyond chance [-]."""
+        """Share that blocks are made with: at most 1, and 0 unless above `SURE` times `sd` [-]."""
         return min(self.share, 1.0) if self.share > SURE * self.sd else 0.0
 
     @property
     def mixed(self) -> bool:
-        """Whether it is, beyond chance, neither noise alone nor wander alone."""
+        """Whether the share is above 0 and below 1, each by more than `SURE` times `sd`."""
         return SURE * self.sd < self.share < 1 - SURE * self.sd
 
 
@@ -62,8 +62,8 @@ def fast_wander(samples: SlipSamples, residual: Array, slope: Array) -> FastWand
         slope: Slope of force in slip of each sample, shape (n,) [N].
 
     Returns:
-        The estimate; None where slip has no white part, or fewer than three pieces of runs are long
-        enough and tell anything.
+        The estimate; None where fewer than three pieces of runs have 4 `FAR` samples, a white part
+        of the slip, a mean slope other than zero and residuals that vary.
     """
     white = slip_noise_variance(samples)
     noise, weight, typical = [], [], []

@@ -34,7 +34,8 @@ def middle_loads(blocks: SlipBlocks) -> Array:
     """Compute the load of the middle of the measurements at each of `load_levels`, shape (m,) [N].
 
     It is the median of the blocks nearest to the level, at which a curve passes through the
-    middle of its points. The level itself is lower, since it is made of lower quartiles.
+    middle of its points; the level itself where no block is nearest to it. The level is lower,
+    since it is made of lower quartiles.
     """
     levels = load_levels(blocks)
     load = np.maximum(blocks.normal_force, 1e-9)
@@ -47,8 +48,8 @@ def nearest_level(load: Array, levels: Array) -> NDArray[np.intp]:
     """Find the load level nearest to each load, by the ratio of the two.
 
     Args:
-        load: Loads, shape (n,) [N].
-        levels: Load levels, shape (m,) [N].
+        load: Positive loads, shape (n,) [N].
+        levels: Positive load levels, shape (m,) [N].
 
     Returns:
         Index of the level, shape (n,).

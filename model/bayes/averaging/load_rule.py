@@ -21,7 +21,8 @@ class LoadRule:
         heavy: The heavier load, as measured [N].
         heavy_share: Share of the block at the heavier load [-].
         variance: Variance of the load [N^2].
-        followed: Variance of the load by which slip follows it, at least `LEAST_FOLLOWED` [N^2].
+        followed: Variance of the load over which `slip_per_load` is computed, at least the square
+            of `LEAST_FOLLOWED` times the mean load [N^2].
         slip_per_load: Slope of slip over measured load within the block [1/N].
     """
 
@@ -36,8 +37,8 @@ class LoadRule:
 def load_rule(blocks: SlipBlocks) -> LoadRule:
     """Compute two loads and their shares with each block's mean, variance and skewness of load.
 
-    The load's standard deviation counts as `LEAST_SPREAD` of its mean at least, and as
-    `LEAST_FOLLOWED` where slip follows it.
+    The load's standard deviation counts as `LEAST_SPREAD` of its mean at least, and in `followed`
+    as `LEAST_FOLLOWED` of it.
     """
     # A block at a single load gets a small spread, so that the slope in load is defined.
     spread = np.maximum(np.sqrt(blocks.load_variance), LEAST_SPREAD * blocks.normal_force)

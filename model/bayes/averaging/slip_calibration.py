@@ -120,7 +120,7 @@ def _beyond_noise(
 
     Returns:
         The variance of true slip [-], and the degrees of freedom that the shrunk variance of
-        measured slip is worth, (n_runs,) each.
+        measured slip is worth, (n_runs,) each; 0 and 1 if `total` is zero in all runs.
     """
     if not total.any():
         return np.zeros_like(total), np.ones_like(total)

@@ -69,7 +69,7 @@ class SlipRule:
 
 
 def slip_rule(slip: Array, variance: Array, *, sine: bool = False) -> SlipRule:
-    """Choose the points for blocks.
+    """Choose the points for blocks: five pairs where slip is within `FAR` sd of zero, else one.
 
     Args:
         slip: Mean slip of each block, shape (n,) [-].

@@ -37,7 +37,7 @@ def fast_noise(
     `HARMLESS` posterior standard deviations, the force has to tell the share of wander so well
     that its error moves no parameter by more than `TOLERATED`. A share between noise alone and
     wander alone is used by the fit, but its error is not part of the posterior: it has to be known
-    so well that the parameters move by `MIXED` at most.
+    so well that the parameters move by `MIXED` at most. Otherwise the check is not testable.
 
     Args:
         posterior: The posterior of the fit.
@@ -48,7 +48,7 @@ def fast_noise(
         slope: Slope of force in slip, shape (n,) [N].
 
     Returns:
-        The check; none where measured slip has no white part.
+        A list of the check; empty where measured slip has no white part.
     """
     if not slip_noise_variance(samples).any():
         return []

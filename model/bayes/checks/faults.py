@@ -69,7 +69,7 @@ def faults(
 
 
 def _failed(check: Check, cause: str) -> Check:
-    """Return the check with what it found to be wrong, if it failed."""
+    """Return the check with `cause` if it failed, else as it is."""
     return replace(check, cause=cause) if check.failed else check
 
 
@@ -130,8 +130,9 @@ def _clipped(samples: SlipSamples) -> Check:
 
 
 def _delay(samples: SlipSamples, residual: Array, slope: Array) -> Check:
-    """Check that traction is not late: no delay over any of `DELAY_SPANS` has a p below `DELAY_P`.
+    """Check that traction is neither late nor early.
 
+    Of no span of `DELAY_SPANS` may the delay have a two-sided p-value of `DELAY_P` or less.
     `residual` and `slope` are those of the samples by `raw_residuals`, shape (n,) [N].
     """
     name = "traction follows slip at once"
@@ -153,7 +154,7 @@ def _delay(samples: SlipSamples, residual: Array, slope: Array) -> Check:
 
 
 def _swing(fit: Linearised, samples: SlipSamples) -> list[Check]:
-    """Check that residuals do not swing with a period, by `find_swing`; none for short runs."""
+    """Check that no swing by `find_swing` has a p-value up to `SWING_P`; [] where it finds none."""
     found = find_swing(fit, block_times(fit, samples))
     if found is None:
         return []
@@ -176,7 +177,7 @@ def _swing(fit: Linearised, samples: SlipSamples) -> list[Check]:
 def _long_enough(samples: SlipSamples, correlation: float | None) -> list[Check]:
     """Check that the median run holds `MEMORIES` correlation times of the noise.
 
-    Not testable in shorter runs, or of under `FEWEST_SAMPLES`; no check without `correlation`.
+    Not testable in shorter runs, or of under `FEWEST_SAMPLES`; [] where `correlation` is None.
     """
     if correlation is None:
         return []
@@ -193,7 +194,7 @@ def _long_enough(samples: SlipSamples, correlation: float | None) -> list[Check]
 
 
 def _friction(fit: Linearised, explained: Array) -> list[Check]:
-    """Check that runs do not scatter in friction, by `friction_scatter`; none with too few runs."""
+    """Check that `friction_scatter` has a p-value above `SCATTER_P`; [] where it is None."""
     found = friction_scatter(fit, explained)
     if found is None:
         return []

@@ -34,10 +34,10 @@ PASSES = 2  # of each set-point, where none was repeated
 
 
 def offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> Check:
-    """Check that run offsets explain little variance and are within three prior scales [N].
+    """Check that the posterior mean of the offsets' standard deviation is small.
 
-    Their share of the variance, with that of the fitted curve, is at most `MAX_OFFSET_SHARE`. One
-    run cannot tell its offset from the next one's.
+    Its square is at most `MAX_OFFSET_SHARE` of the sum of that square and the variance of the
+    fitted curve, and it is at most `MAX_OFFSET_RATIO` times `scale`. Not testable with one run.
 
     Args:
         blocks: The block means.
@@ -70,8 +70,8 @@ def _one_run(name: str, why: str) -> Check:
 def run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
     """Check that about 90 % of run means lie inside their predictive 90 % intervals.
 
-    Passed if the two-sided binomial p-value is above `MIN_P`: more may fail it as well as fewer.
-    Not testable with so few runs that none inside is no rarer than that.
+    Passed if the two-sided binomial p-value is above `MIN_P`, which more may fail as well as fewer,
+    and `far_runs` finds none. Not testable with fewer than `FEWEST_RUNS`.
     """
     name = "run means are predicted"
     why = f"runs: {blocks.n_runs}; expected {FEWEST_RUNS} or more"
@@ -93,7 +93,11 @@ def run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
 
 
 def _run_advice(residuals: Residuals, far: list[str]) -> Advice:
-    """Choose what to do about run means: leave runs out, measure again, or state the load cell."""
+    """Choose advice on run means: leave out runs that are `far`, if any.
+
+    Otherwise zero before each run where fewer than `INSIDE` of them are inside their intervals, or
+    weigh the load cell where more are.
+    """
     if far:
         return ExcludeRuns("these runs do not belong to the others", tuple(far))
     if residuals.inside < INSIDE:
@@ -104,7 +108,7 @@ def _run_advice(residuals: Residuals, far: list[str]) -> Advice:
 
 
 def whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
-    """Check that the lag-1 autocorrelation of whitened residuals is below `lag_one_limit`.
+    """Check that the absolute lag-1 correlation of whitened residuals is below `lag_one_limit`.
 
     Not testable with fewer than `FEWEST_PAIRS` pairs of successive blocks in the same run, nor
     where the median run has fewer than `FEWEST_IN_RUN` blocks: noise that changes slowly and the
@@ -131,9 +135,10 @@ def whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
 
 
 def _whiteness_advice(residuals: Residuals, blocks: SlipBlocks) -> Advice:
-    """Choose advice on correlated residuals: another law, or shorter runs if forces drift.
+    """Choose advice on correlated residuals: another law, or zeroing before each run for drift.
 
-    Drift makes no negative lag-1 correlation, and no misfit that runs share at a slip and load.
+    Another law if the lag-1 correlation is negative or `misfit_p` below `MISFIT_P`: drift makes
+    neither that correlation nor a misfit that runs share at a slip and load.
     """
     if residuals.lag_one < 0 or residuals.misfit_p < MISFIT_P:
         return law_advice(blocks)
@@ -165,7 +170,9 @@ def shape(residuals: Residuals, blocks: SlipBlocks) -> Check:
     """Check that the misfit that all runs share is small or not significant, at each load too.
 
     It fails above `MAX_MISFIT` of the peak force at its load with a p-value below `MISFIT_P`. Not
-    testable if no two runs share a slip and load, or too few do for a misfit of that size to show.
+    testable with one run or without two runs that share a slip and load; nor, where it does not
+    fail, if a misfit of that size would not show or less than `MIN_REPEATED` of the runs are
+    repeated.
     """
     name = "the law fits the shape of the curve"
     if blocks.n_runs == 1:

@@ -22,13 +22,14 @@ MOST_NAMED = 3
 
 @dataclass(frozen=True)
 class GroupResiduals:
-    """Mean residuals of groups of samples, each of one load and side; shape (m,) each.
+    """Mean residuals of m groups of samples, each of one load and side.
 
     Attributes:
-        load: Load level [N].
-        driving: Whether slips are positive.
-        mean: Mean of measured minus predicted traction over the group's samples [N].
-        sd: Standard deviation that the fitted model gives that mean, with what the fit absorbs [N].
+        load: Load level, shape (m,) [N].
+        driving: Whether slips are positive, shape (m,).
+        mean: Mean of measured minus predicted traction over a group's samples, shape (m,) [N].
+        sd: Standard deviation that the fitted model gives that mean, less what the fit absorbs,
+            shape (m,) [N].
         square: Chi-square of all means together, with their correlations [-].
         freedom: Its degrees of freedom: directions in which a mean can differ from zero.
     """
@@ -46,7 +47,7 @@ class GroupResiduals:
         return float(chdtrc(self.freedom, self.square)) if self.freedom else 1.0
 
     def worst(self) -> str:
-        """Name the groups whose means are most standard deviations from zero, as text."""
+        """Format the `MOST_NAMED` groups whose means are most standard deviations from zero."""
         order = np.argsort(-np.abs(self.mean / self.sd))[:MOST_NAMED]
         return ", ".join(
             f"{self.mean[i]:+.2g} ± {self.sd[i]:.2g} N at {self.load[i]:.3g} N "

@@ -41,7 +41,8 @@ class Inspection:
 
     Attributes:
         checks: The checks, failed ones with their causes.
-        suspected: Terms that explain something, the best first, with those not told from it.
+        suspected: The term that explains most, and one that cannot be told from it if there is
+            one; empty if no term explains anything.
     """
 
     checks: tuple[Check, ...]
@@ -104,7 +105,10 @@ def _is_two_sided(posterior: SlipPosterior, fit: Linearised) -> bool:
 
 
 def _family(name: str, found: list[Found], untested: str) -> Check:
-    """Check that no term of a family is in the data.
+    """Check that no term of a family is in the data: the least p-value is above `TERM_P`.
+
+    If it is, the check is not testable where `untested` says so, or where a term of the size that
+    does harm (`Found.matters`) would not be seen.
 
     Args:
         name: Claim that is checked.
@@ -147,9 +151,10 @@ def _hidden(name: str, found: Found, evidence: str) -> Check:
 
 
 def _suspected(found: list[Found]) -> tuple[Found, ...]:
-    """Return the term that explains most, and the next if it cannot be told from it.
+    """Return the term with the largest gain, and the next if it cannot be told from it.
 
-    None explains anything if no p-value is below `NAMED_P`.
+    Only terms with a p-value below `NAMED_P` count; the result is empty without any. The next is
+    the first whose gain is above `RIVAL` of the largest, or less than `CLOSE` below it.
     """
     ranked = sorted((x for x in found if x.term.p < NAMED_P), key=lambda each: -each.gain)
     if not ranked:

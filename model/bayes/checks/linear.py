@@ -45,7 +45,8 @@ class Term:
     Attributes:
         size: Estimated multiple of the term.
         sd: Its standard deviation: that of the model, or from the scatter between runs if larger.
-        p: Two-sided p-value of a multiple of zero, by Student's t of the number of runs [-].
+        p: Two-sided p-value of a multiple of zero, by Student's t. Its degrees of freedom are the
+            number of runs less one, or of one run the number of blocks [-].
     """
 
     size: float
@@ -116,7 +117,8 @@ class Linearised:
     def test(self, term: Array) -> Term:
         """Estimate the multiple of a term, shape (n,) [N], that the data ask for beside the fit.
 
-        A term that the fit absorbs to one part in a thousand has the size 0 and the p-value 1.
+        A term that the fit absorbs to one part in a thousand has the size 0, an infinite standard
+        deviation and the p-value 1.
         """
         white = whiten(self.blocks, term[:, None], self.factors)[:, 0]
         left = self.project(term[:, None])[:, 0]

@@ -21,7 +21,8 @@ class Swing:
     """A swing of the residuals that runs share, each with a phase of its own.
 
     Attributes:
-        period: Its period, in the unit of time that was given.
+        period: Its period, in the unit of time that was given; of a swing with the angle of the
+            ground disc the period at zero slip.
         slip: Amplitude in slip that would make it [-].
         p: Probability of one as large by chance, at all periods tried [-].
     """
@@ -44,13 +45,14 @@ def find_swing(fit: Linearised, time: Array) -> Swing | None:
     Residuals are fitted, run by run, with the slope of the curve times a sine and a cosine: of
     constant frequency (the leg disc's speed is constant), or in proportion to 1 - slip (the ground
     disc's). Their chi-square over all runs is compared with the typical one of other frequencies.
+    Periods reach from `PER_PERIOD` blocks to the median run of those of `FEWEST_BLOCKS` or more.
 
     Args:
         fit: The linearised fit.
         time: Time of each block, shape (n,).
 
     Returns:
-        The swing; None where no run has `FEWEST_BLOCKS` blocks.
+        The swing; None where no run has `FEWEST_BLOCKS` blocks, or no period is between these.
     """
     blocks = fit.blocks
     sizes = np.bincount(blocks.run)
@@ -95,7 +97,7 @@ def _most(fit: Linearised, since: Array, frequency: Array, long: NDArray[np.bool
 
 
 def _explained(fit: Linearised, waves: Array, white: Array) -> Array:
-    """Return what two whitened waves explain of whitened residuals in each run, (n_runs,) [-]."""
+    """Compute the chi-square of whitened residuals by two whitened waves, of each run (n_runs,)."""
     starts = fit.blocks.run_starts()[:-1]
     cc, ss, cs = (
         np.add.reduceat(waves[:, a] * waves[:, b], starts) for a, b in ((0, 0), (1, 1), (0, 1))
@@ -106,6 +108,6 @@ def _explained(fit: Linearised, waves: Array, white: Array) -> Array:
 
 
 def _amplitude(fit: Linearised, square: float, freedom: int) -> float:
-    """Return the amplitude in slip that explains a chi-square beyond its expectation [-]."""
+    """Return the amplitude in slip that explains a chi-square beyond `freedom`; 0 if below [-]."""
     slope = whiten(fit.blocks, fit.predicted.slope[:, None], fit.factors)[:, 0]
     return float(np.sqrt(max(square - freedom, 0.0) / max(0.5 * float(slope @ slope), 1e-300)))

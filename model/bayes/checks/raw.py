@@ -32,7 +32,7 @@ class Outliers:
     Attributes:
         count: Number of such samples.
         share: Their share of all samples [-].
-        size: Median leap [N].
+        size: Median of their absolute leaps; 0 if there are none [N].
         run: Index of the run with the most of them; 0 if there are none.
     """
 
@@ -43,7 +43,7 @@ class Outliers:
 
     @property
     def matter(self) -> bool:
-        """Whether there are more than chance, or a single fault, makes."""
+        """Whether there are `FEWEST_OUTLIERS` and `OUTLIER_SHARE` of the samples, or more."""
         return self.count >= FEWEST_OUTLIERS and self.share >= OUTLIER_SHARE
 
 
@@ -117,8 +117,8 @@ def outliers(samples: SlipSamples, residual: Array, by_slip: Array) -> Outliers:
 
     A leap is the residual less the mean of its neighbours. It is too large beyond `OUTLYING` robust
     deviations and beyond the reach of slip noise in the three. A robust deviation is 1.4826 times
-    the median absolute leap of the run or, of runs shorter than `LONG_RUN`, of all, and no less
-    than half of all.
+    the median absolute leap of the run or, of runs shorter than `LONG_RUN`, of all samples that
+    leap, and no less than half of that. A leap smaller than one beside it does not count.
 
     Args:
         samples: The samples.
@@ -155,10 +155,15 @@ def clipped(force: Array) -> Clipped | None:
     """Find a force that stops at a limit: many samples exactly at the extreme, few just below.
 
     Of a cell whose readings are counts every level has many samples; at a limit there are
-    `CLIPPED_EXCESS` times as many as at the next two levels.
+    `FEWEST_CLIPPED` or more, and over `CLIPPED_EXCESS` times as many as at either of the next two
+    levels. A maximum counts if it is positive, a minimum if it is negative.
 
     Args:
         force: Measured force of each sample, shape (n,) [N].
+
+    Returns:
+        The samples at the upper limit, or else at the lower; None if there is no limit, or the
+        force has fewer than three levels.
     """
     for sign in (1.0, -1.0):
         levels, counts = np.unique(sign * force, return_counts=True)
@@ -197,6 +202,10 @@ def delay(samples: SlipSamples, residual: Array, slope: Array, *, span: int) -> 
         residual: Residual of each sample, shape (n,) [N].
         slope: Slope of force in slip, shape (n,) [N].
         span: Samples to either side, at least 1.
+
+    Returns:
+        The delay; 0 with a p-value of 1 where slip changes in no run, or the runs that hold two
+        windows have fewer than three pieces.
     """
     upper, lower = [], []
     window = 2 * span + 1
@@ -226,7 +235,8 @@ def opposed_runs(samples: SlipSamples) -> NDArray[np.bool_]:
     """Find runs whose traction opposes their slip, shape (n_runs,).
 
     Only samples whose traction over load is beyond `SLIPPING` of the largest (the 95 % quantile)
-    count, so that zero errors of slip or force hide no sign; a run has to have some.
+    count, so that zero errors of slip or force hide no sign. They have to be half of a run's
+    samples or more, and their slip and traction of unlike signs in more than `OPPOSED` of them.
 
     Args:
         samples: The samples.

@@ -25,7 +25,8 @@ SECOND_LOAD = 2.0  # ratio of the load to measure next to the only one
 def rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Check:
     """Check that tested slips between zero and the peak leave no gap above `MAX_RISE_GAP`.
 
-    Where they do, slope and peak are those of the law's shape, which nothing has tested there.
+    Where they do, slope and peak are those of the law's shape, which nothing has tested there. Not
+    testable if the curve has no peak.
     """
     found = sampled_rise(blocks, law, values)
     if not len(found.further):
@@ -43,10 +44,10 @@ def rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Check:
 
 
 def peak(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Check:
-    """Check that slips beyond the peak's were tested at one load at least.
+    """Check that at one load at least the largest tested slip reaches the peak's.
 
-    If not, or in more than a twentieth of the draws not, the peak is an extrapolation of the law.
-    A law without a peak is tested as far as its slips go.
+    That is the 95 % quantile of the draws' peak slips. If it is reached at no load the check is not
+    testable: the peak is an extrapolation of the law. If no draw has a peak, it is passed.
     """
     largest = largest_slips(blocks)
     k = len(law.parameters)
@@ -89,7 +90,10 @@ def slips_beyond(reason: str, blocks: SlipBlocks, peaks: Array) -> Advice:
 
 
 def loads(blocks: SlipBlocks) -> Check:
-    """Check that there are two loads or more: at one, how traction grows with it is the prior's."""
+    """Check that there are two loads or more; not testable at one.
+
+    How traction grows with load is then the prior's.
+    """
     levels = load_levels(blocks)
     if len(levels) > 1:
         span = f"{levels[0]:.3g} to {levels[-1]:.3g} N"
@@ -133,9 +137,10 @@ def weak_parameters(
 
 
 def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
-    """Compute the largest tested slip over the median peak slip, the largest of all loads [-].
+    """Compute the largest tested slip over the median of the draws' peak slips at each load.
 
-    0 at loads where the median curve has no peak.
+    The largest ratio of all loads is returned [-]; it is 0 where the median is infinite, as half of
+    the draws or more have no peak.
 
     Args:
         blocks: The block means.
@@ -146,6 +151,9 @@ def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
 
 
 def _peaks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
-    """Return the slip of the median curve's peak at each load level, or one for all [-]."""
+    """Return the median of the draws' peak slips at each load level, infinite without a peak [-].
+
+    Shape (m,), or (1,) for a Magic Formula whose curvature does not depend on load.
+    """
     k = len(law.parameters)
     return np.median(law.peak_slip(load_levels(blocks), values[:, :k].T[:, :, None]), axis=0)

@@ -28,8 +28,8 @@ def engines(found: Agreement | None) -> Check:
 
     They may differ by `MAX_MEAN` standard deviations and `MAX_SPREAD`, or by `ERRORS` Monte Carlo
     errors of the difference where that is more. Not testable where the importance weights are not
-    reliable, or too few draws count for more than `MOST_ERROR` times the limits to show, or the
-    posterior was not sampled (None).
+    reliable, where these errors raise a limit to more than `MOST_ERROR` times its constant, or
+    where the posterior was not sampled (None).
     """
     advice = SampleAgain("two computations of the posterior differ")
     if found is None:

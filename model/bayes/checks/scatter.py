@@ -22,7 +22,8 @@ class FrictionScatter:
     Attributes:
         sd: Standard deviation of friction between runs, over friction [-].
         gain: Twice the log likelihood that it gains over offsets of the same size in all runs [-].
-        runs: Relative difference of each run's friction from the curve's, shape (n_runs,) [-].
+        runs: Relative difference of each run's friction from the curve's; 0 where the run's mean
+            force is up to a tenth of the largest, shape (n_runs,) [-].
     """
 
     sd: float

@@ -57,7 +57,7 @@ class Found:
 
 
 def run_times(fit: Linearised) -> Array:
-    """Return the place of each block's run in the experiment, from -1 to 1, shape (n,) [-]."""
+    """Return the place of each block's run in the experiment, -1 to 1, (n,) [-]; 0 for one run."""
     blocks = fit.blocks
     return np.linspace(-1, 1, blocks.n_runs)[blocks.run] if blocks.n_runs > 1 else 0 * blocks.slip
 
@@ -91,7 +91,7 @@ def _radius_advice(found: str, size: float) -> Advice:
 
 
 def _correct(what: str) -> Callable[[str, float], Advice]:
-    """Return the advice to correct the data by what a text says, whatever the size of the term."""
+    """Return a `Suspect.advice`: do what the text `what` says, whatever the size of the term."""
     return lambda found, _: CorrectData(found, what)
 
 

@@ -31,7 +31,8 @@ def choose_jumps(
     """Choose what jumps propose: a mixture fitted to weighted draws, or the Laplace approximations.
 
     The Laplace approximations are kept where the weights are not reliable, where too few draws are
-    effective for one part of a mixture, and where jumps to that are accepted less often.
+    effective for one part of a mixture, and where jumps to that are accepted no more often. The
+    share of moves that jump is `MANY` where more than `LIKELY` are accepted, else `FEW`.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.

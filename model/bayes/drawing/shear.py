@@ -88,7 +88,10 @@ class Shear:
 
 
 def find_shear(log_density: LogDensity, mode: Laplace, rng: np.random.Generator) -> Shear | None:
-    """Find the shear that straightens a density, or None where it is straight already.
+    """Find the shear that straightens a density; None where it counts as straight.
+
+    That is where no direction is wider than `WIDE` or all are, or where a step of `LOOK` in a wide
+    direction shifts no narrow one by `BENT` standard deviations.
 
     Args:
         log_density: Log density of coordinates (w, d), standard normal a priori, -inf out of

@@ -116,6 +116,8 @@ def fit_mixture(
 def _shrunk_covariance(away: Array, weights: Array, whole: Array) -> Array:
     """Compute a part's covariance from draws less its centre, shrunk to that of all draws.
 
+    It is that of all draws where the squares of all weights are zero.
+
     Args:
         away: Draws less the centre, shape (n, d).
         weights: Weight of each draw in the part, shape (n,).

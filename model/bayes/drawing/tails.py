@@ -89,11 +89,16 @@ def find_tails(log_density: LogDensity, mode: Laplace) -> tuple[Laplace, ...]:
 def _stride(
     log_density: LogDensity, mode: Laplace, z: Array, index: NDArray[np.intp], side: Array
 ) -> tuple[Array, Array]:
-    """Move one coordinate of each point outward, and let the others follow by a Newton step.
+    """Move one coordinate of each point outward, the others to about the highest density there.
+
+    The one moves by `STRIDE` standard deviations and the others by their regression on it. Then the
+    others alone make a damped Newton step: of the `SHARES` of a step the one is taken that leads to
+    the highest density. Entries of the gradient that are not finite count as 0.
 
     Args:
         log_density: Log density of coordinates (w, d).
-        mode: Gaussian that gives the stride and the covariance of the others.
+        mode: Gaussian that gives stride, regression, and the covariance of the others given the
+            one, with which the Newton step is made.
         z: Points, shape (m, d).
         index: The coordinate that moves, of each point, shape (m,).
         side: Sign of its move, shape (m,).

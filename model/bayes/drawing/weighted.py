@@ -97,7 +97,7 @@ def weighted_draws(
     rng: np.random.Generator,
     threads: int = 1,
 ) -> WeightedDraws:
-    """Draw from a posterior with importance weights that are reliable, if need be by adaptation.
+    """Draw from a posterior with importance weights, by adaptation where these are not reliable.
 
     Draws from the mixture of Laplace approximations come first. If their tail index is
     `MAX_PARETO_K` or more or fewer than the wanted number are effective, as of posteriors that lean
@@ -114,7 +114,7 @@ def weighted_draws(
         threads: Number of batches of draws whose density is computed at once.
 
     Returns:
-        The draws, in random order.
+        The draws, in random order; their weights may be unreliable after `MOST_FURTHER` draws too.
     """
     spread = in_batches(log_density, threads)
     drawn = importance_draws(log_density, proposal, n=n, rng=rng, threads=threads)
@@ -210,7 +210,8 @@ def pareto_smoothed(log_ratio: Array) -> tuple[Array, float]:
 
     Returns:
         Logarithms of the weights, whose sum is one, shape (n,), and the tail index of the ratios:
-        infinite where the tail has fewer than five ratios, or ratios all alike.
+        infinite, and the weights not smoothed, where the tail has fewer than five ratios, or ratios
+        all alike.
     """
     from arviz_stats.base import array_stats  # takes a second
 

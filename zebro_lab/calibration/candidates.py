@@ -44,7 +44,8 @@ def _sided(
 ) -> dict[str, SlipLaw]:
     """Return laws with driving and braking together or apart, as asked for; with "auto" both.
 
-    If slip has one sign, sides cannot be told apart: "auto" gives the laws as they are.
+    If slip has one sign, sides cannot be told apart: "auto" gives the laws as they are, and "apart"
+    raises `SettingsError`.
     """
     if request.sides == TOGETHER:
         return laws

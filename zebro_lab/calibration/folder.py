@@ -238,8 +238,8 @@ def _law_content(calibration: "Calibration") -> dict[str, Any]:
     """Return the tables `law`, `parameters`, `covariance` and `curve` of `slip.toml`.
 
     `parameters` has the posterior of all parameters, those of the measurement too; `covariance`
-    that of the law's parameters alone, 0 for fixed ones. Each entry of `curve` has the posterior
-    medians of the curve's features (peak, slope, …) at one load.
+    that of the law's parameters alone. Each entry of `curve` has the posterior medians of the
+    curve's features (peak, slope, …) at one load.
     """
     law, k = calibration.posterior.law, len(calibration.posterior.law.parameters)
     return {

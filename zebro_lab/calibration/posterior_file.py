@@ -79,8 +79,8 @@ def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Gener
 def _posterior(file: Path, curve: SlipCurve) -> Array:
     """Read the posterior draws of a law, shape (m, k).
 
-    A parameter without draws, a fixed one, has the curve's value; without draws of any, the file is
-    of another law and `DataError` is raised.
+    A parameter without draws has the curve's value throughout; without draws of any, the file is of
+    another law and `DataError` is raised.
     """
     names = [parameter.name for parameter in curve.law.parameters]
     columns, others = read_draws_of(file, "posterior", names, advice=_ADVICE)

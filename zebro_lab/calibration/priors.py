@@ -250,7 +250,7 @@ def read_earlier(path: Path) -> EarlierCalibration:
     Raises:
         NotFound: There is no `posterior.nc` beside the `slip.toml`.
         DataError: The `slip.toml` is missing or damaged, or `posterior.nc` is damaged or lacks
-            draws of a parameter of the law, as of one that was fixed.
+            draws of a parameter of the law.
     """
     found = read_slip_file(path)
     posterior = found.file.with_name(POSTERIOR)

@@ -72,7 +72,9 @@ def calibrate(
     *,
     executor: Executor | None = None,
 ) -> tuple[Calibration, RigData]:
-    """Fit a slip law to rig data; write the calibration folder, with a checkpoint if not converged.
+    """Fit a slip law to rig data, and write the calibration folder.
+
+    It has a checkpoint if sampling did not converge; else an earlier checkpoint is removed.
 
     Args:
         request: Options: data, settings and output folder.
@@ -89,6 +91,7 @@ def calibrate(
         ModelError: The law is unknown or the fit failed; a checkpoint may have been written.
         Stopped: The watcher requested a stop, or a signal stopped the fit after a checkpoint; one
             was written if sampling had begun.
+        StoppedBySignal: A signal stopped the fit before a checkpoint.
     """
     data = read(request, watcher) if data is None else data
     stated, laws = gather_priors(request, data, candidates(request, data.samples))

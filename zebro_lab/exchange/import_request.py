@@ -100,7 +100,9 @@ class ImportRequest:
 
     @property
     def pose_sd(self) -> tuple[float, float | None] | None:
-        """Standard deviations of tracked positions [m] and headings [rad], as far as given.
+        """Standard deviations of tracked positions [m] and headings [rad]; None if none is given.
+
+        That of the headings is None if only that of the positions is given.
 
         Raises:
             SettingsError: One is no length or angle, not above 0, or implausibly large; or that of

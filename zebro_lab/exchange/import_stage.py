@@ -163,14 +163,14 @@ def _times(part: LegLog | ImuLog | ForeignTrack) -> tuple[Array, Path]:
 
 
 def _legs(path: Path, request: ImportRequest) -> tuple[LegLog, str | None]:
-    """Read the leg angles; return them, and the topic that was read if the file is a ROS log."""
+    """Read the leg angles; return them, and the topic that was read of a ROS log, else None."""
     mapping, topic = read_mapped_columns(LEGS, path, request.columns, LEG_UNITS)
     names = LegNames(joint_names(request.joints), request.topic, topic)
     return legs_of_file(path, mapping, names=names)
 
 
 def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
-    """Read the IMU; return it, and the topic that was read if the file is a ROS log."""
+    """Read the IMU; return it, and the topic that was read of a ROS log, else None."""
     series, topic = read_mapped_columns(IMU, path, request.columns, IMU_UNITS)
     if not is_ros_log(path):
         return imu_of_table(read_table_file(path, sheet=series.sheet), series), None
@@ -180,7 +180,7 @@ def _imu(path: Path, request: ImportRequest) -> tuple[ImuLog, str | None]:
 
 
 def _track(path: Path, request: ImportRequest) -> tuple[ForeignTrack, str | None]:
-    """Read the track; return it, and the topic that was read if the file is a ROS log."""
+    """Read the track; return it, and the topic that was read of a ROS log, else None."""
     alone = request.legs is None
     columns, topic = read_mapped_columns(TRACK, path, request.columns, MAPPED_UNITS, alone=alone)
     track = read_foreign_track(

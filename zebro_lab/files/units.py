@@ -75,7 +75,8 @@ def factor_to_si(unit: str, si_unit: str) -> float:
 
     Angles count as a dimension here, although they are dimensionless in SI: otherwise "Hz" would be
     accepted for an angular speed, which is wrong by a factor of 2 pi. Of an angular speed "1/min"
-    is revolutions per minute, see `counts_turns`.
+    is revolutions per minute, see `counts_turns`; of an acceleration "g" is standard gravity, and
+    "mg" a thousandth of it.
 
     Args:
         unit: Unit as pint spells it; "", "-" and "1" mean dimensionless.

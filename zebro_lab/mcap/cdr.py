@@ -110,7 +110,10 @@ class CdrReader:
         return self._take(np.dtype(dtype), count) if count else np.empty(0, dtype)
 
     def _take(self, dtype: np.dtype[Any], count: int) -> NDArray[Any]:
-        """Read `count` numbers from the next multiple of their size on; the array is a view."""
+        """Read `count` numbers from the next multiple of their size on; the array is a view.
+
+        Raises `ValueError` if the message ends before them.
+        """
         start = self._at + -self._at % dtype.itemsize
         self._at = start + count * dtype.itemsize
         if self._at > len(self._data):

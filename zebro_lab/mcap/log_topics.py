@@ -31,7 +31,7 @@ class TopicRows:
 
     Attributes:
         topic: The topic.
-        type: Type of its messages.
+        type: Type of its first message.
         t: Stamp of each message, or its log time where it has none [s].
         contents: What each message holds.
         notes: Notes, one line each.

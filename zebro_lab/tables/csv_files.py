@@ -154,7 +154,8 @@ def _layout(path: Path, lines: list[Line], *, bare: bool) -> TextLayout:
 def _frame(path: Path, layout: TextLayout, data: bytes, encoding: str) -> pd.DataFrame:
     """Read all rows below the header with pandas, under the names of the layout.
 
-    Where rows have one cell more than the header, the last column is named `_SURPLUS`.
+    Where rows have one cell more than the header, the last column is named `_SURPLUS`. Raises
+    `DataError` if pandas cannot read the rows, as where one has still more cells.
     """
     names = [*layout.header.names, *[_SURPLUS] * (layout.width > len(layout.header.names))]
     text = io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline="")

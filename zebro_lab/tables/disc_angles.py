@@ -71,6 +71,10 @@ def joined_angles(
 
     Args:
         tables: Angles of each table, in the order of its samples; None of a table without.
+
+    Returns:
+        The joined angles, None if no disc has angles in all tables or their radii differ; and the
+        notes.
     """
     each = [one for one in tables if one is not None]
     if not each:

@@ -52,10 +52,10 @@ class RigTable:
         )  # fmt: skip
 
     def required(self, name: str) -> MappedColumn:
-        """Return the mapping of a canonical column, header, unit and factor, or raise.
+        """Return the mapping of a canonical column: header, unit and factor, as `source_of`.
 
         Raises:
-            DataError: The column is neither mapped nor a header of the table.
+            DataError: The column is neither mapped nor a header of the table, or as in `source_of`.
         """
         source = self.source_of(name)
         if source is None:
@@ -125,7 +125,7 @@ class RigTable:
         return constant
 
     def require(self, name: str, good: NDArray[np.bool_], problem: Callable[[str], str]) -> None:
-        """Check a condition on a column; raise an error at the first row that fails it.
+        """Check a condition on a column; the error names the first row that fails it.
 
         Args:
             name: Canonical name of the column.

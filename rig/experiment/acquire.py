@@ -130,7 +130,8 @@ class GuardedAcquisition:
     def disarm(self) -> None:
         """Command both drives to stand and de-energise at once; errors of sending are suppressed.
 
-        A board only gets speed 0, because it has no command to de-energise.
+        Of a rig on one micro-controller (`BoardBench`) both discs only get speed 0, because it has
+        no command to de-energise.
         """
         self._bench.disarm()
         self.energised = False
@@ -256,13 +257,16 @@ class GuardedAcquisition:
                 self._sink.event(note.kind, note.text)
 
     def _require_free_space(self, now: float) -> None:
-        """Check every `SPACE_CHECK_PERIOD` that the sink can store the plan's `free_space`."""
+        """Check every `SPACE_CHECK_PERIOD` that the sink can store the plan's `free_space`.
+
+        Otherwise the sink raises `SinkFailed`. A sink that has failed is not checked.
+        """
         if self._sink is not None and now >= self._check_space_at:
             self._check_space_at = now + SPACE_CHECK_PERIOD
             self._sink.require_room(self._limits.free_space)
 
     def _await_health(self) -> None:
-        """Read until no fault is reported; after `FAULT_CLEAR_TIME` raise the fault."""
+        """Read until no fault is reported; after `FAULT_CLEAR_TIME` raise its `DeviceFault`."""
         end = self._clock.now() + FAULT_CLEAR_TIME
         while True:
             self._clock.sleep(self._period)
@@ -276,7 +280,10 @@ class GuardedAcquisition:
                 return
 
     def _raise_if_stopped(self) -> None:
-        """Raise a pending stop above the ignored category; an emergency stop de-energises first."""
+        """Raise `StopRequested` for a pending stop harder than the ignored category.
+
+        An emergency stop de-energises first.
+        """
         stop = self._control.stop.pending
         if stop is None or (self._ignored is not None and stop.category <= self._ignored):
             return

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Common interface of a slip rig for experiments: disc speeds out, samples in, for any wiring.
 
-A bench reads drives and load cell, or a board, in one thread, and interpolates their samples to
-common times.
+A bench reads either drives and load cell, or one micro-controller (board) in place of both, in one
+thread, and interpolates their samples to common times.
 """
 
 from abc import ABC, abstractmethod
@@ -94,7 +94,8 @@ class Bench(ABC):
     def disarm(self) -> None:
         """Command both drives to stand and de-energise; errors of sending are suppressed.
 
-        A board only gets speed 0, because it has no command to de-energise.
+        Of a rig on one micro-controller (`BoardBench`) both discs only get speed 0, because it has
+        no command to de-energise.
         """
         self._leg.disarm()
         self._ground.disarm()
@@ -222,7 +223,8 @@ class DrivesBench(Bench):
         """Compute the new values of the watched quantities by the name of their limit.
 
         They are lateral force [N], largest torque [N m], and the higher of the drives' latest
-        temperatures at each answer of a drive [degC], each of shape (m,).
+        temperatures at each answer of a drive [degC], each of shape (m,). The dictionary is empty
+        where `watch` selected none, and lacks a torque for which the profile has no scale.
         """
         if not self._further:
             return {}
@@ -242,7 +244,7 @@ class DrivesBench(Bench):
         """Interpolate both discs' speeds linearly at the times of the waiting forces.
 
         Forces later than a disc's last speed wait for the next call; forces are discarded until
-        both discs have sent a speed.
+        both discs have sent a speed. A force before a disc's first speed gets that speed.
         """
         if not all(len(speeds) for speeds in self._speeds.values()):
             self._waiting = self._waiting[:0]

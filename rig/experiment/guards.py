@@ -99,7 +99,10 @@ class FrozenGuard:
         self._scattered = False
 
     def check(self, values: Values, *, wanted: float, now: float) -> None:
-        """Check the values of a batch; at set-points of at most `TURNING` start anew.
+        """Check the values of a batch.
+
+        At set-points of at most `TURNING` nothing is checked, and the time without a change starts
+        anew; what was learned of the scatter is kept. An empty batch changes nothing.
 
         Args:
             values: Values in the sensor's unit, in order of time, shape (n, channels).
@@ -108,7 +111,8 @@ class FrozenGuard:
 
         Raises:
             FrozenReading: No channel has changed for longer than the limit, over at least
-                `MIN_REPEATS` readings, though one scattered or a speed's set-point moved.
+                `MIN_REPEATS` readings, though a channel scattered before or, for a speed, the
+                set-point has moved by more than `TURNING` since.
         """
         if abs(wanted) <= TURNING:
             self._last = None
@@ -125,12 +129,17 @@ class FrozenGuard:
                 raise FrozenReading(self._what, value=now - self._changed, limit=self._limit)
 
     def _learn(self, values: Values, last: Values, now: float) -> None:
-        """Update each channel's smallest step, and whether any scatters beyond its rounding.
+        """Update each channel's smallest step, and whether any channel scatters.
 
-        A channel scatters where a batch mostly changes it by `LARGE` resolutions or more: in more
-        than half of the last `SCATTER_BATCHES` batches with a change, and in more than half of all
-        batches, by an exponential moving average over `SCATTER_TIME`. Its resolution is the
-        smallest step so far, at least `SINGLE_PRECISION` of its value.
+        A channel's change over a batch, from `last` to the batch's last value, is large if it is
+        at least `LARGE` times the channel's resolution: its smallest step other than 0 so far, or
+        `SINGLE_PRECISION` of its value if that is more. A channel scatters if its change was large
+
+        * in more than half of the last `SCATTER_BATCHES` batches in which any channel changed, and
+        * in more than half of all batches, by an exponential moving average of time constant
+          `SCATTER_TIME`.
+
+        A batch in which no channel changes leaves the result as it was.
 
         Args:
             values: Values of a batch, shape (n, channels), n > 0.
@@ -196,7 +205,13 @@ class RecordGuard:
             self._base, self._since = counters, now
 
     def _require_most(self, counters: Counters, base: Counters) -> None:
-        """Check the fraction of missing and rejected records between two states of the counters."""
+        """Check the fraction of missing and rejected records between two states of the counters.
+
+        Fewer than `MIN_RECORDS` records pass.
+
+        Raises:
+            UnreliableRecords: The fraction is above `MAX_BAD_FRACTION`.
+        """
         received = counters.received - base.received
         bad = counters.lost + counters.rejected - base.lost - base.rejected
         if bad + received >= MIN_RECORDS and bad > MAX_BAD_FRACTION * (bad + received):
@@ -295,7 +310,8 @@ class RigGuards:
     ) -> None:
         """Check that both discs follow their set-points and that no sensor is frozen.
 
-        The forces must change while the leg disc turns, the speed of a disc while this one does.
+        Forces are checked by `FrozenGuard` while the leg disc is commanded to turn, a disc's speed
+        while that disc is.
         """
         forces = np.column_stack([batch.normal, batch.traction])
         self._frozen_forces.check(forces, wanted=wanted[0], now=now)

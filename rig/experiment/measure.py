@@ -94,6 +94,9 @@ def record(
 
     Returns:
         The recorded samples, taken since the start, zero subtracted.
+
+    Raises:
+        RigError: As `settle`; also `SinkFailed` where the sink cannot store the samples.
     """
     duration = plan.points.duration
     start = clock.now()

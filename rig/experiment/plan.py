@@ -149,7 +149,7 @@ class RunLimits:
         reading_age: Largest age of a reading when it is checked [s].
         frozen: Longest time for which forces and speeds stay the same, bit for bit, while discs
             turn [s].
-        rest_speed: Mean speed below which a disc counts as standing [rad/s].
+        rest_speed: Largest mean speed of a disc that counts as standing [rad/s].
         free_space: Least free space on the disk of the data [bytes].
         hold: Longest duration of a hold, after which a soft stop becomes a safe one [s].
         lateral_force: Largest magnitude of the force on the load cell's third axis; None where the

@@ -56,7 +56,10 @@ def parse_plan(table: TomlTable) -> Plan:
 
 
 def _points(table: TomlTable) -> PointGrid:
-    """Read the grid; the length of a point is a `duration` [s] or `turns` of the leg disc."""
+    """Read the grid; the length of a point is a `duration` [s] or `turns` of the leg disc.
+
+    Loads must be above 0 N and slips at most 1; a sweep needs at least two slips.
+    """
     length = table.choice("length", ("duration", "turns"))
     omega = table.positive("omega_leg")
     # Turns of the leg disc, because the ground disc stands still at slip 1.
@@ -83,7 +86,7 @@ def _points(table: TomlTable) -> PointGrid:
 
 
 def _load(table: TomlTable) -> LoadSetting:
-    """Read how the load is set; only by hand is known."""
+    """Read how the load is set, of which `set_by = "hand"` is the only way accepted."""
     set_by = table.text("set_by")
     if set_by != "hand":
         raise table.fault(f'found {set_by!r}; set the load by hand: set_by = "hand"', "set_by")

@@ -62,7 +62,7 @@ class RestProof:
         return whole and all(not self._problem(disc) for disc in DISCS)
 
     def failure(self, *, waited: float) -> NotAtRest:
-        """Return an error that says why standstill is not verified, and of which disc.
+        """Return an error that says why standstill is not verified, of the first disc that fails.
 
         Args:
             waited: Duration of the attempt [s].

@@ -144,7 +144,10 @@ class _Run:
         return RunOutcome(reason, len(self._done), refused, self._attempts, source)
 
     def _execute_plan(self) -> str:
-        """Carry out the steps, and a stop that ends the run; return the reason of `RunOutcome`."""
+        """Carry out the steps, and a stop that ends the run; return the reason of `RunOutcome`.
+
+        If a part of the run has failed, its `PartFailed` is raised after the stop instead.
+        """
         self._sink.event("begin", f"{self._plan.name}, {self._bench.source}")
         if self._plan.limits.guards_off:
             self._sink.event("guards off", self._plan.limits.guards_off_text)
@@ -226,7 +229,7 @@ class _Run:
         self._watcher.changed(condition)
 
     def _tare(self) -> None:
-        """Unload and take the zero of the load cell; log a warning where it has drifted."""
+        """Unload and take the zero of the load cell; warn where it drifted beyond `zero_drift`."""
         self._announce("zero of the load cell")
         self._set_load(0.0)
         zero = take_zero(self._acquire, self._plan.controls.tare_duration)
@@ -266,7 +269,7 @@ class _Run:
         self._loaded = target
 
     def _measure(self, point: Point) -> None:
-        """Set the load and measure a point until an attempt is accepted or all are used up."""
+        """Set the load and measure a point until an attempt is accepted, or refuse it after all."""
         self._set_load(point.load)
         problems: tuple[str, ...] = ()
         for attempt in range(1, self._plan.accept.attempts + 1):
@@ -330,7 +333,7 @@ class _Run:
             self._sink.close_run(verdict, reason=reason)
 
     def _finish(self, reason: str) -> SinkFailed | None:
-        """Store latch and end of the run, then show the state; return the sink's last failure."""
+        """Store latch and end of the run, show the state; return the last `SinkFailed` or None."""
         stop = self._control.stop.pending
         latched = stop is not None and stop.category is StopCategory.EMERGENCY
         if stop is not None and latched:

@@ -36,7 +36,7 @@ class RunStart:
 class RunSink(Protocol):
     """Recorder of runs, one for each attempt at a point; must not block the acquiring thread.
 
-    Every method may raise `SinkFailed`, which stops the rig.
+    Every method but `latch` may raise `SinkFailed`, which stops the rig.
     """
 
     def open_run(self, start: RunStart) -> None:
@@ -75,7 +75,10 @@ class RunSink(Protocol):
         ...
 
     def latch(self, reason: str) -> None:
-        """Store the latch of an emergency stop at once, also after an earlier failure."""
+        """Store the latch of an emergency stop at once, also after an earlier failure.
+
+        Must not raise: a failure is raised by the next call of another method.
+        """
         ...
 
 

@@ -97,7 +97,7 @@ def weigh(
 
     Raises:
         NotAtRest: A disc turns, or its speed is unknown.
-        RigError: A device failed, or `load` did; a load cell that is silent for `SILENCE` does.
+        RigError: A device or `load` failed, or no normal force arrived for `SILENCE`.
         ProtocolError: Fewer than 2 `BATCHES` forces arrived in `duration`.
     """
 

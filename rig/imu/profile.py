@@ -23,7 +23,8 @@ if TYPE_CHECKING:  # commands of devices that are no such units start without it
     from scipy.spatial.transform import Rotation
 
 NORM_TOLERANCE: Final = 0.05
-"""Largest difference of a quaternion's length from 1 [-]."""
+"""Largest difference from 1 of a measured quaternion's length, and of the mounting's squared length
+[-]."""
 QUATERNION: Final = tuple(f"quaternion_{axis}" for axis in "wxyz")
 ANGLES: Final = ("roll", "pitch", "yaw")
 RATE: Final = tuple(f"angular_rate_{axis}" for axis in "xyz")

@@ -99,7 +99,7 @@ def describe_error(error: int, firmware: str) -> str:
 
     Args:
         error: Axis error, a field of bits.
-        firmware: Version of the firmware, a key of `ERRORS`.
+        firmware: Version of the firmware, a key of `ERRORS`; another one is a KeyError.
 
     >>> describe_error(0x800, "0.5"), describe_error(0x10000000, "0.5")
     ('watchdog timer expired', 'unknown error 0x10000000')

@@ -175,7 +175,11 @@ def _across(
     """Return the leg drive's sample times [s], and angles or speeds of both discs at these times.
 
     `count` selects them: 0 for angles [rad], 1 for speeds [rad/s], as counts of a sample are motor
-    position [rev] and velocity [rev/s]. The ground disc's are interpolated linearly.
+    position [rev] and velocity [rev/s]. The ground disc's are interpolated linearly, and held
+    before its first and after its last sample.
+
+    Raises:
+        ProtocolError: There is no sample of one of the drives.
     """
     columns = as_columns(samples)
     time, turned = {}, {}

@@ -199,7 +199,10 @@ class DriveBus(LinkedStream[CanLink]):
         return samples
 
     def _receive(self, timeout: float) -> list[Sample]:
-        """Return the samples that arrive, and store heartbeats and temperatures in their drives."""
+        """Return the samples that arrive, and store heartbeats and temperatures in their drives.
+
+        Frames of nodes other than the two drives' are ignored.
+        """
         messages = self._link.read(timeout)
         samples = []
         for message, arrived in zip(messages, self._link.arrivals(messages), strict=True):

@@ -52,8 +52,8 @@ class RigImperfections:
         delay: Time by which the readings of both forces are behind those of the speeds [s].
 
     Raises:
-        DomainError: A standard deviation, time, height or width is negative or NaN, or an error of
-            a gain or of the radii is not above -1.
+        DomainError: A standard deviation, correlation time, height, width or run-out is negative or
+            NaN, or an error of a gain or of the radii is not above -1.
     """
 
     gain_traction: float = 0.0

@@ -269,7 +269,7 @@ class SimulatedRig:
         }
 
     def _turn(self, disc: str, n: int) -> Array:
-        """Advance a disc by n steps towards its set-point; return its speed, shape (n,) [rad/s]."""
+        """Advance a disc by n steps to its set-point; return speeds with ripple, (n,) [rad/s]."""
         target = self._target[disc]
         decay = np.exp(-GRID / self._dynamics.speed_lag * np.arange(1, n + 1))
         smooth = target + (self._omega[disc] - target) * decay

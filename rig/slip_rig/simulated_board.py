@@ -95,7 +95,10 @@ class SimulatedBoard:
         return encode_packet(Packet(Kind.SLIP_RIG, number, ticks, self._body.pack(*counts)))
 
     def _execute(self, packet: Packet, now: float) -> None:
-        """Execute a stop, which clears an expired watchdog, or speeds of both discs."""
+        """Execute a stop, which clears an expired watchdog, or speeds of both discs.
+
+        Until that stop speeds are ignored, as are other packets at any time.
+        """
         if packet.kind == Kind.STOP:
             self._status = 0
             self._stop()

@@ -42,7 +42,11 @@ class LegCommands(Protocol):
         ...
 
     def stop(self) -> bool:
-        """Send the command to stop every leg where it is; return whether the link took it."""
+        """Send the command to stop every leg where it is; return whether the link took it.
+
+        Raises:
+            RigTimeout: The link is connected but does not take the command.
+        """
         ...
 
 
@@ -102,7 +106,7 @@ def follow(
         Whether the link took the command.
 
     Raises:
-        LimitExceeded, ProtocolError: As `LegCommands.set_points`.
+        LimitExceeded, ProtocolError, RigTimeout: As `LegCommands.set_points`.
     """
     theta = reference.angles(now - start + horizon)[0]
     chosen = [theta[leg - 1] for leg in sorted(legs.profile.legs)]

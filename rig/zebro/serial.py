@@ -193,6 +193,9 @@ class PolledLegs(LeftStill, _RegisterStream):
 
         There is none where the reading is due later than `timeout` [s], or the answer is missing,
         incomplete or impossible. Waiting for the answer adds up to `ANSWER_TIMEOUT`.
+
+        Raises:
+            RigTimeout: The port accepts no bytes within its timeout.
         """
         now = self._clock.now()
         wait = self._next_at - now

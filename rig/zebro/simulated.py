@@ -73,6 +73,7 @@ class PacketRobot(_ByteRobot):
         return [self._encode(frame) for frame in self.legs.frames(now)]
 
     def _encode(self, frame: Frame) -> bytes:
+        """Encode a frame as a packet of the kind `LEGS`."""
         ticks = round(frame.device_time / TICK)
         body = self.legs.profile.words(6).pack(*frame.counts)
         return encode_packet(Packet(Kind.LEGS, frame.number, ticks, body))
@@ -175,6 +176,7 @@ class CanRobot:
                     self._bus.send(arrived)
 
     def _encode(self, frame: Frame) -> tuple[can.Message, can.Message]:
+        """Encode a frame as the CAN frame of its device time and, after it, that of its counts."""
         ids = self.legs.profile.can_ids
         number = frame.number % SEQUENCE_WRAP
         ticks = round(frame.device_time / TICK) % TICKS_WRAP

@@ -40,7 +40,11 @@ class SimulatedBody:
         self._moved(self._theta[None], np.zeros((1, N_LEGS)))
 
     def __call__(self, now: float) -> tuple[float, float, float]:
-        """Compute roll, pitch and yaw [rad] at a time by the legs' clock, never decreasing [s]."""
+        """Compute roll, pitch and yaw [rad] at a time by the legs' clock, never decreasing [s].
+
+        Roll and pitch stay as they were where at any instant since the last call no three legs hold
+        the robot; yaw stays from that instant on.
+        """
         began = now if self._at is None else self._at
         steps = max(int(np.ceil((now - began) / STEP - 1e-9)), 1)  # less rounding errors
         dt = (now - began) / steps  # 0 in the first call

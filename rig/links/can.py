@@ -179,7 +179,11 @@ class CanLink:
         )
 
     def _send(self, message: can.Message) -> bool:
-        """Send a frame; return False, and begin to reconnect, where the bus is disconnected."""
+        """Send a frame; return False, and begin to reconnect, where the bus is disconnected.
+
+        Raises:
+            RigTimeout: The bus takes no frame within `WRITE_TIMEOUT`.
+        """
         if self._bus is None:
             return False
         try:

@@ -120,7 +120,10 @@ class FaultyWire(FaultyLine[bytes]):
         return frame[: int(self._rng.integers(0, len(frame)))]
 
     def _flip(self, data: bytearray) -> bytes:
-        """Flip bits: draw how many, each bit with the probability `flip`, and then which."""
+        """Flip bits: draw how many, each bit with the probability `flip`, and then which.
+
+        A bit may be drawn twice, and is then as it was.
+        """
         flips = self._rng.binomial(8 * len(data), self._faults.flip) if self._faults.flip else 0
         for bit in self._rng.integers(0, 8 * len(data), flips) if flips else ():
             data[bit // 8] ^= 1 << (bit % 8)

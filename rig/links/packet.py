@@ -81,7 +81,10 @@ class CobsFramer:
         self._out_of_sync = False
 
     def _decode(self, piece: bytes) -> bytes | None:
-        """Decode the bytes between two zeros; None where they are damaged or empty."""
+        """Decode the bytes between two zeros; None where they are damaged or empty.
+
+        Damaged ones are counted, but not those before the first zero.
+        """
         joined, self._joined = self._joined, True
         if not piece:  # two ends in a row: a sender may begin with one to end noise
             return None

@@ -139,7 +139,11 @@ class PacketStream(LinkedStream[ByteLink]):
         return Sample(now, self._device_time.unwrap(packet.ticks), sequence, counts)
 
     def _refuse_foreign(self, packet: Packet) -> None:
-        """Count a packet of another kind or length; raise at `MAX_FOREIGN` without any sample."""
+        """Count a packet of another kind or length as refused.
+
+        Raises:
+            DeviceMismatch: It is the `MAX_FOREIGN`-th or a later one, and no sample was received.
+        """
         self._refused += 1
         self._foreign += 1
         if self._received == 0 and self._foreign >= MAX_FOREIGN:

@@ -188,6 +188,9 @@ def _readable(port: serial.Serial, timeout: float) -> bool:
 
 
 def _reason(problem: OSError | ValueError) -> str:
-    """Return the system's words for an error that has a number: pyserial's repeat it."""
+    """Return the system's text for an error with an errno, else the error's own text.
+
+    Pyserial's own text repeats errno and the name of the port.
+    """
     number = problem.errno if isinstance(problem, OSError) else None
     return str(problem) if number is None else os.strerror(number)

@@ -84,6 +84,7 @@ class _Terminal:
             return b""
 
     def close(self) -> None:
+        """Remove the name of the port and close both ends of the pseudo-terminal."""
         self._link.unlink(missing_ok=True)
         os.close(self._slave)
         os.close(self._master)
@@ -110,6 +111,7 @@ class _Socket:
             return b""
 
     def close(self) -> None:
+        """Close the connection to the client, if there is one, and the listening socket."""
         self._drop()
         self._listener.close()
 

@@ -114,7 +114,8 @@ class SlcanAdapter:
         """Execute one line from the host, without its carriage return, and return the answer.
 
         Frames are passed on, `O` and `L` open the channel and `C` closes it; settings of bit rate,
-        time stamps and filters are answered but have no effect.
+        time stamps and filters are answered but have no effect. Other lines are counted as refused
+        and answered by a bell, but for the requests in `_ANSWERS`.
         """
         command = line[:1]
         if command in (b"t", b"T", b"r", b"R"):

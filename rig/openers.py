@@ -93,8 +93,8 @@ def imu_at(
         The driver, not yet entered.
 
     Raises:
-        ProfileError: The address or the profile is invalid, the profile at a port describes a
-            table, or the address is a replay.
+        ProfileError: The address or the profile is invalid, the profile describes a table, or the
+            address is a replay.
         LinkError: The system provides no port for a twin.
     """
     profile, port = resolve(address, default=IMU_PROFILE)

@@ -98,7 +98,11 @@ def require_device(link: str, profile: str) -> None:
 
 
 def _find(name: str) -> Traversable:
-    """Find a profile by path or, where there is no such file, among the shipped ones by name."""
+    """Find a profile by path or, where there is no such file, among the shipped ones by name.
+
+    Raises:
+        ProfileError: There is neither; the message suggests shipped ones.
+    """
     path = Path(name)
     if path.is_file():
         return path

@@ -17,7 +17,7 @@ from model.arrays import Array
 from rig.errors import LimitExceeded, RigError, RigTimeout
 
 REST_SPEED: Final = 0.1
-"""Mean speed below which a disc counts as standing, unless a plan sets it [rad/s]."""
+"""Largest mean speed of a disc that counts as standing, unless a plan sets it [rad/s]."""
 
 
 def require_within(value: float, limit: float, *, quantity: str, unit: str) -> None:

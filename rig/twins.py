@@ -94,11 +94,15 @@ def simulated_legs(legs: SimulatedLegs, *, rng: np.random.Generator) -> Iterator
     """Serve simulated legs at a virtual CAN bus or a port, and yield their driver.
 
     Args:
-        legs: The legs; a profile of the layout `table` is a `ProfileError`.
+        legs: The legs, whose profile's layout decides between bus and port.
         rng: Random generator of transmission errors.
 
     Yields:
         A `Stream` that also takes `LegCommands`, not yet entered.
+
+    Raises:
+        ProfileError: The layout of the legs' profile is `table`.
+        LinkError: The system provides no port.
     """
     profile = legs.profile
     if LEGS[profile.layout].link == "can":
@@ -134,6 +138,7 @@ def simulated_imu(
         The driver, not yet entered.
 
     Raises:
+        ProfileError: The layout of the unit's profile is `table`.
         LinkError: The system provides no port.
     """
     unit = load_class(IMUS[profile.layout].twin, profile=profile.name)

@@ -14,11 +14,11 @@ from model.arrays import Array
 
 _TRUSTED = 0.7  # share of the points from which the floor's covariance is estimated
 _OUTLIER = 12.0  # squared distance beyond which a colour is an outlier for the floor's light
-_ROUNDS = 5
+_ROUNDS = 5  # of the robust estimate of the floor's covariance
 _SHADOW = 0.4  # least share of the floor's light that is left in shadow
 _NO_FLOOR = 20.0  # squared distance beyond which a colour is not the floor's
-_LEVELS = 32
-_RARE = 0.1  # share of colours that may be any
+_LEVELS = 32  # bins of each channel in the histogram of colours
+_RARE = 0.1  # share of the density of colours that is uniform over all
 
 
 NOISE = 12.0
@@ -76,7 +76,8 @@ class FloorColours:
     def shows(self, picture: NDArray[np.float32]) -> NDArray[np.bool_]:
         """Compute the mask of points whose colour is the floor's, lit or in shadow.
 
-        That is at a squared distance below 20 from 0.4 to 1 times `light`; (rows, columns).
+        Its squared Mahalanobis distance from the nearest of the colours from 0.4 to 1 times `light`
+        is below 20. Shape (rows, columns).
         """
         seen, light = picture @ self.whitening, self.light @ self.whitening
         share = (seen * light).sum(axis=-1) / np.maximum((light**2).sum(axis=-1), 1e-6)

@@ -243,7 +243,9 @@ class KnownExposure:
 
 
 def disturbance_sd(score: float, share: float) -> float:
-    """Compute the error of x and of y that other exposures and the floor cause, in robot lengths.
+    """Compute the standard deviation of x and y by other exposures and the floor, in robot lengths.
+
+    It is `PASTED_SD` times the root of (1 - score²) / score² over the share, of at least 0.05.
 
     Args:
         score: Correlation of the exposure's visible part with the template, above 0 [-].
@@ -254,7 +256,9 @@ def disturbance_sd(score: float, share: float) -> float:
 
 
 def strip_sd(share: float) -> float:
-    """Compute the error of x and of y of an exposure that shows a strip, in robot lengths.
+    """Compute the standard deviation of x and y of an exposure seen as a strip, in robot lengths.
+
+    It is `STRIP_SD` times the square of the hidden over the visible share, this of at least 0.05.
 
     Args:
         share: Visible share of the top [-].

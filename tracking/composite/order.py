@@ -63,11 +63,11 @@ def _cheap_tour(cost: Array) -> list[int]:
 
 def _nearest_neighbours(cost: Array, start: int) -> list[int]:
     """Build a tour from a start: from each pose to the cheapest that is not yet in it."""
-    tour, left = [start], set(range(len(cost))) - {start}
-    while left:
+    tour, remaining = [start], set(range(len(cost))) - {start}
+    while remaining:
         last = tour[-1]
-        tour.append(min(left, key=lambda k: cost[last, k]))
-        left.remove(tour[-1])
+        tour.append(min(remaining, key=lambda k: cost[last, k]))
+        remaining.remove(tour[-1])
     return tour
 
 

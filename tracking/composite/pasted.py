@@ -49,7 +49,7 @@ LEAST_ODDS = 0.9
 
 MOST_EXPOSURES = 40  # where the search for more ends
 
-LEFT, FLOOR_LEFT = 0.05, 0.25
+MARGIN, FLOOR_MARGIN = 0.05, 0.25
 """Margins of a cut-out around the robot, in lengths of the robot: what is hidden in any case, and
 where points of the floor's colour may be hidden [-]."""
 
@@ -57,9 +57,9 @@ OUTLIER_SD = 2.5
 """Standard deviations beyond which a point of a pasted exposure is an outlier [-]."""
 
 _LEAST_OF_STEP = 0.6  # least distance as a share of the usual step; intervals are regular
-_LEAST_MATCH = 0.5
+_LEAST_MATCH = 0.5  # least correlation of a place with the whole known exposure
 _SHOWS = 0.5  # share of visible points that are not occluded
-_TRIED = 5
+_TRIED = 5  # largest number of poses from which a search starts
 _FAR = 3.0  # in standard deviations: beyond it the colour differs from that a step away
 _STRIP_LEVER = 0.9  # lever arm for the heading of a strip, of the length
 _TOGETHER = 100  # poses whose colours fit into a processor's cache
@@ -110,7 +110,7 @@ class PastedReading(Reading):
 
     @cached_property
     def matches(self) -> list[Array]:
-        """Poses at which the whole known exposure correlates with the picture, the best first."""
+        """Poses (3,) at which the whole known exposure correlates by 0.5 or more, best first."""
         robot = self.body.read(self.picture, self.known.pose.planar)
         template = self.body.template(robot, self.known.plate.height)
         return match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
@@ -149,28 +149,28 @@ class PastedReading(Reading):
     def hidden_pixels(self, pose: BodyPose) -> NDArray[np.bool_]:
         """Compute the mask (height, width) of pixels of lower exposures that one hides or may hide.
 
-        If `with_floor`, it may hide pixels of the floor's colour up to `FLOOR_LEFT` around it.
+        If `with_floor`, it may hide pixels of the floor's colour up to `FLOOR_MARGIN` around it.
 
         Args:
             pose: Pose of the exposure on top, whose cut-out with its margin hides them.
         """
-        hidden = self.known.box.hidden(pose.state, left=LEFT)
+        hidden = self.known.box.hidden(pose.state, margin=MARGIN)
         if self.with_floor:
             floor = self.known.on_photo(self.floor, self.plane, pose.planar, reach=1.25) > 0.5
-            hidden |= floor & self.known.box.hidden(pose.state, left=FLOOR_LEFT)
+            hidden |= floor & self.known.box.hidden(pose.state, margin=FLOOR_MARGIN)
         return hidden
 
     def hidden_points(self, pose: Array) -> NDArray[np.bool_]:
         """Compute the mask of the plane's points of lower exposures that one hides or may hide.
 
-        If `with_floor`, it may hide points of the floor's colour up to `FLOOR_LEFT` around it.
+        If `with_floor`, it may hide points of the floor's colour up to `FLOOR_MARGIN` around it.
 
         Args:
             pose: x, y [m] and yaw [rad] of the exposure on top, shape (3,).
         """
-        hidden = self.known.box.hidden_on(self.plane, pose, left=LEFT)
+        hidden = self.known.box.hidden_on(self.plane, pose, margin=MARGIN)
         if self.with_floor:
-            hidden |= self.known.box.hidden_on(self.plane, pose, left=FLOOR_LEFT) & self.floor
+            hidden |= self.known.box.hidden_on(self.plane, pose, margin=FLOOR_MARGIN) & self.floor
         return hidden
 
     def shown(self, found: Sequence[Pasted]) -> NDArray[np.float32]:
@@ -222,7 +222,7 @@ class PastedReading(Reading):
     def chain_under(
         self, above: Pasted, found: Sequence[Pasted], *, opposite: Array | None = None
     ) -> list[Pasted]:
-        """List the exposure that another partly hides, the one that this hides, and so on down.
+        """List the exposure that another partly hides, the one this hides, and so on; may be empty.
 
         Args:
             above: Exposure to start from.

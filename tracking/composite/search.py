@@ -48,7 +48,8 @@ def find_exposures(
     """Find all exposures of a robot with a marker in one composite picture.
 
     Exposures whose marker correlates as `CLEAR_SCORE` and `CLEAR_SPREAD` ask are taken as found.
-    Others are those found by the body's appearance that align, or are less than 0.9 visible.
+    Others are those found by the body's appearance that lie farther than `LEAST_STEP` from these,
+    and align or are less than 0.9 visible.
 
     Args:
         pixels: The picture, BGR, shape (height, width, 3).
@@ -70,7 +71,7 @@ def find_exposures(
 
     Raises:
         CompositeError: When the marker of no exposure is clearly visible.
-        ValueError: When the picture shows nothing of the marker's plane (see `floor_in_view`).
+        FloorError: When the picture shows nothing of the marker's plane (see `floor_in_view`).
     """
     seen = find_markers(pixels, marker.dictionary, wanted=[marker.marker_id], several=True)
     marked = [
@@ -165,7 +166,7 @@ def find_exposures_like(
     Raises:
         CompositeError: The known exposure is cut by the picture's edge, too small or of too little
             contrast, or fewer than two exposures are found.
-        ValueError: The picture shows nothing of the plane of the top (see `floor_in_view`).
+        FloorError: The picture shows nothing of the plane of the top (see `floor_in_view`).
     """
     reading = _reading(
         pixels, camera, view, known=known, plate=plate, body_size=body_size, prior=prior,
@@ -186,7 +187,12 @@ def _reading(
     plate: TopPlate, body_size: tuple[float, float], prior: BodyPrior,
     hidden: NDArray[np.bool_] | None, near: ArrayLike | None, reach: float,
 ) -> PastedReading:  # fmt: skip
-    """Resample a picture for a known exposure; raise CompositeError as `body_template`."""
+    """Resample a picture for a known exposure.
+
+    Raises:
+        CompositeError: As `KnownExposure.body_template`.
+        FloorError: As `floor_in_view`.
+    """
     hidden = np.zeros(pixels.shape[:2], dtype=bool) if hidden is None else hidden
     area = floor_in_view(camera, view, prior.height + plate.height, near, reach)
     picture = KnownExposure(pixels, camera, view, prior, known, plate, body_size, hidden, area)

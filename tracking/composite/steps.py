@@ -75,7 +75,8 @@ def beside(pose: Array, length: float, *, spacing: float) -> Array:
         spacing: Distance between candidates in x and in y [m].
 
     Returns:
-        x, y [m] and yaw [rad], turned by up to 30 degrees, shape (n, 3).
+        x, y [m] and yaw [rad], turned by up to 30 degrees, shape (n, 3). The step is within 40
+        degrees of the mean of both headings, or of its opposite.
     """
     side = np.arange(-REACH * length, REACH * length + 1e-9, spacing)
     dx, dy = (part.ravel() for part in np.meshgrid(side, side))

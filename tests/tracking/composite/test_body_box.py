@@ -18,7 +18,7 @@ def box() -> BodyBox:
 
 
 def test_its_top_and_its_middle_are_hidden_and_the_far_floor_is_not(box):
-    hidden = box.hidden(STATE, left=0.0)
+    hidden = box.hidden(STATE, margin=0.0)
     assert hidden.shape == (400, 640)
     assert hidden[box.top_seen(STATE)].all()
     middle = project(LENS, VIEW, STATE[None, :3])[0].astype(int)
@@ -27,14 +27,14 @@ def test_its_top_and_its_middle_are_hidden_and_the_far_floor_is_not(box):
 
 
 def test_what_scissors_leave_makes_it_larger_on_all_sides(box):
-    close, wide = (box.hidden(STATE, left=left) for left in (0.0, 0.2))
+    close, wide = (box.hidden(STATE, margin=margin) for margin in (0.0, 0.2))
     assert wide[close].all()
     assert wide.sum() > 1.3 * close.sum()
 
 
 def test_on_a_plane_at_its_top_it_covers_its_own_outline(box):
     plane = level_plane()
-    hidden = box.hidden_on(plane, STATE[[0, 1, 5]], left=0.0)
+    hidden = box.hidden_on(plane, STATE[[0, 1, 5]], margin=0.0)
     rows, columns = np.nonzero(hidden)
     places = np.array([plane.xy_at(*each) for each in zip(rows, columns, strict=True)])
     c, s = np.cos(STATE[5]), np.sin(STATE[5])

@@ -39,7 +39,7 @@ def test_exposures_by_their_markers_are_found_and_named(scene, photos, walk, tmp
     )
     box = BodyBox(scene.camera, view, BODY, scene.robot.marker.position[2], scene.prior.height)
     x, y, yaw = walk[2]
-    cut = box.hidden(np.array([x, y, scene.prior.height, 0, 0, yaw]), left=0.1)
+    cut = box.hidden(np.array([x, y, scene.prior.height, 0, 0, yaw]), margin=0.1)
     cv2.imwrite(str(photo.path), np.where(cut[..., None], last, first))
     found = tracked(replace(scene, body_size=BODY), photo)
     assert [seen.photo for seen in found.track.observations] == ["walk.png#1", "walk.png#2"]

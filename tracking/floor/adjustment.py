@@ -11,9 +11,8 @@ outwards in the picture. Minimised is
 where r is the mark's pixels minus its projection, C the covariance of the pixels, m the unknowns of
 a mark, m_tape and sd_tape the same as measured with a tape measure and their standard deviations,
 l the lens less its calibration and P the covariance of that, b the edges and s their spread.
-Measurements fix the frame: without them translation, rotation and scale of the floor are
-undetermined. Where residuals are too large, the first two sums are divided by the square of a
-factor each.
+Tape measurements alone fix translation, rotation and scale of the floor. Where residuals are too
+large, the first two sums are divided by the square of a factor each.
 
 Edges: sharpening, exposure, compression and resampling move the border between black and white by
 up to some tenths of a pixel. A marker then looks larger or smaller than it is, and nearer or
@@ -54,7 +53,7 @@ class Adjusted:
         lens: fx, fy, cx, cy, k1, k2, p1, p2, k3 less the calibration's, in units of the columns of
             its root, shape (r,) [-].
         edges: How far the edges of all markers lie outwards: at the mean distance of the floor's
-            markers, and more for each `EDGE_REACH` of the logarithm of distance, shape (2,) [px].
+            marks, and more for each `EDGE_REACH` of the logarithm of distance, shape (2,) [px].
     """
 
     floor: FloorMap
@@ -119,8 +118,8 @@ class Adjustment:
     def edges(self) -> "EdgeSpread":
         """Compute the posterior of the edges' spread by the evidence (marginal likelihood) of each.
 
-        The prior is a half-Cauchy one of scale `EDGE_SCALE`: by the sizes in which they appear, a
-        few markers can tell a large spread from a small one, hardly more.
+        The prior is half-Cauchy, of scale `EDGE_SCALE`, and is returned where the floor has no
+        markers: a few can tell a large spread from a small one, hardly more.
         """
         prior = np.log(EDGE_SPREADS) - np.log1p((EDGE_SPREADS / EDGE_SCALE) ** 2)  # by log spread
         if not self.floor.markers:
@@ -161,7 +160,7 @@ class Adjustment:
         return self.camera.changed(self._lens_root @ found.lens)
 
     def start(self) -> Adjusted:
-        """Return the unknowns as they were measured, with the camera poses to start from."""
+        """Return starting values: marks as measured, `poses`, and no change of lens and edges."""
         return Adjusted(
             self.floor, tuple(self.poses), np.zeros(self._lens_root.shape[1]), np.zeros(2)
         )
@@ -211,7 +210,8 @@ class Adjustment:
         return found[0], found[1]
 
     @cached_property
-    def _lens_root(self) -> Array:  # A (9, r) with A A' the lens's covariance
+    def _lens_root(self) -> Array:
+        """Matrix A, shape (9, r), with A A' the covariance of the lens."""
         return SharedErrors(self.camera.covariance, {}).root
 
     @cached_property

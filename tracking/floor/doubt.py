@@ -49,7 +49,7 @@ def more_or_less(off: float, unit: str) -> str:
 
 
 def suspicion(suspects: Sequence[SuspectValue], *, remarkable: float) -> tuple[str, ...]:
-    """Format a warning that names the likeliest suspect, and those hardly less likely.
+    """Format a warning that names the likeliest suspect, and those of log odds less than 4 lower.
 
     Args:
         suspects: All values that were tried.
@@ -57,7 +57,7 @@ def suspicion(suspects: Sequence[SuspectValue], *, remarkable: float) -> tuple[s
             they rise by chance [-].
 
     Returns:
-        One sentence; none where no suspect is remarkable.
+        One sentence; empty where no suspect reaches `remarkable`.
     """
     ranked = sorted(suspects, key=lambda each: -each.log_odds)
     if not ranked or ranked[0].log_odds < remarkable:
@@ -160,7 +160,10 @@ def _loose(camera: Camera) -> Camera:
 
 
 def _weighed(problem: Adjustment, found: Adjusted) -> _Weighed:
-    """Fit for each of `_SPREADS` of edges; return the likeliest fit, with the sum of evidences."""
+    """Fit for each of `_SPREADS` of edges, and return the likeliest fit.
+
+    Its log evidence is that of all spreads: the log of the sum of their evidences times priors.
+    """
     fits = []
     for sd in _SPREADS:
         tried = replace(problem, edge_sd=float(sd))

@@ -215,7 +215,8 @@ class _Job:
     def _conclude(self, state: Array, normal: Array) -> Alignment | None:
         """Build the alignment at a solution (7,): covariance, derivatives by shared errors, score.
 
-        `normal` (7, 7) is the matrix of the last normal equations, prior included.
+        `normal` (7, 7) is the matrix of the last normal equations, prior included. None where too
+        little is visible there (`_look`).
         """
         look = self._look(state)
         if look is None:

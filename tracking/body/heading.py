@@ -65,8 +65,9 @@ def resolve_headings(
 def _link(before: Alignment, after: Alignment, length: float, walks_ahead: bool) -> float:
     """Compute the log score of two successive alignments from turn and direction of the move.
 
-    A turn lowers it by up to 10. If the robot `walks_ahead` and moved by over a quarter of its
-    `length`, 6 times the cosine between move and mean heading is added.
+    A turn lowers it by half the square of turn over `_TURN_SD`, at most by 10. If the robot
+    `walks_ahead` and moved by over a quarter of its `length`, 6 times the cosine between move and
+    mean heading is added.
     """
     a, b = before.pose.planar, after.pose.planar
     turn = float(np.angle(np.exp(1j * (b[2] - a[2]))))
@@ -105,7 +106,8 @@ def _score_reversed(
 ) -> float:  # fmt: skip
     """Compute the best total score with head and tail exchanged in every photograph.
 
-    A photograph without an option opposite to the chosen one keeps that, with the lowest score.
+    A photograph without an option opposite to the chosen one, by over 134 degrees, keeps the chosen
+    one, with the lowest score.
     """
     against = []
     for ways, k, own in zip(options, choice, scores, strict=True):

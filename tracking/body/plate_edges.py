@@ -89,8 +89,9 @@ def refine_corners(
         sd_px: Standard deviation of u and of v of a click [px].
 
     Returns:
-        The corners; the clicks with their covariance where no edge is clear, or where the edges
-        contradict them: all together with a probability below 1e-4, or two sides with 1e-3.
+        The corners; the clicks with their covariance where a side is shorter than `_SHORTEST`, no
+        edge is clear, or the edges contradict the clicks: all together with a probability below
+        1e-4, or two sides with 1e-3.
     """
     clicks = np.asarray(clicks_px, dtype=float)
     kept = RefinedCorners(clicks, sd_px**2 * np.eye(8), 0)
@@ -131,7 +132,9 @@ def refine_corners(
 
 
 def _contradicted(surprise: Array, information: Array) -> int | None:
-    """Return the place of the side that the others and the clicks contradict most, if any does.
+    """Return the place of the side that the others and the clicks contradict most.
+
+    None where the surprise of that side has a probability of `_ALARM_OF_SIDE` or more.
 
     Args:
         surprise: Offsets of the sides less those of the clicks, two of each side, shape (2m,) [px].
@@ -147,7 +150,7 @@ def _contradicted(surprise: Array, information: Array) -> int | None:
 
 
 def _sd(of: tuple[float, float], length: float) -> float:
-    """Return a standard deviation [px] of a side of a length [px]."""
+    """Return the root of the sum of squares of `of[0]` [px] and `of[1]` times a length [px]."""
     return float(np.hypot(of[0], of[1] * length))
 
 
@@ -200,6 +203,8 @@ def _measurement(
 
 def _find_edge(pixels: NDArray[np.uint8], side: Array, normal: Array, reach: float) -> _Edge | None:
     """Find the one clear edge along a side; None where there is none, or more than one.
+
+    None also where one end of the edge is farther than `reach` from the side.
 
     The strongest step of the side's mean profile gives a first offset and the edge's colours; then
     a line is fitted to the steps of segments along the side.
@@ -302,12 +307,12 @@ def _follow(slope: Array, along: Array) -> tuple[Array, Array] | None:
     if len(found) < _FOLLOWED * _SEGMENTS:
         return None
     values, design = np.array(found), np.column_stack((np.ones(len(places)), places))
-    used, line, left = np.ones(len(values), dtype=bool), np.zeros(2), np.zeros(len(values))
+    used, line, off = np.ones(len(values), dtype=bool), np.zeros(2), np.zeros(len(values))
     for _ in range(5):
         line = np.linalg.lstsq(design[used], values[used], rcond=None)[0]
-        left = np.abs(values - design @ line)
-        used = left <= max(3 * 1.4826 * float(np.median(left)), 0.1)
+        off = np.abs(values - design @ line)
+        used = off <= max(3 * 1.4826 * float(np.median(off)), 0.1)
     if used.sum() < _FOLLOWED * _SEGMENTS:
         return None
-    variance = float(np.sum(left[used] ** 2)) / (used.sum() - 2)
+    variance = float(np.sum(off[used] ** 2)) / (used.sum() - 2)
     return line, variance * np.linalg.inv(design[used].T @ design[used])

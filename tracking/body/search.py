@@ -79,7 +79,7 @@ def find_body(
         where no alignment reaches `ACCEPTED_SCORE`.
 
     Raises:
-        ValueError: When the photograph shows nothing of the top's plane (see `floor_in_view`).
+        FloorError: When the photograph shows nothing of the top's plane (see `floor_in_view`).
     """
     height = prior.height + template.plate.height
     area = floor_in_view(camera, view, height, near, reach)
@@ -225,7 +225,7 @@ def match_whole(
         least: Least correlation of a match [-].
 
     Returns:
-        x, y [m] and yaw [rad] of the matches, the best first, shape (3,) each.
+        x, y [m] and yaw [rad] of the matches, the best first, shape (3,) each; empty without any.
     """
     best = yaws = None
     for yaw, score in correlations(picture, template, plane.cell, turns=2 * _TURNS):

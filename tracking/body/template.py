@@ -178,7 +178,10 @@ def make_template(
 
 
 def _grid(plate: TopPlate, step: float) -> Array:
-    """Compute the raster of a plate with margins: rows from the front, columns from the left."""
+    """Compute the points of a plate with margins in the body frame, (rows, columns, 3) [m].
+
+    Rows go from front to rear, columns from left to right.
+    """
     rear, front, right, left = plate.extent
     x = np.arange(front, rear, -step)
     y = np.arange(left, right, -step)

@@ -95,12 +95,13 @@ def dictionary_named(name: str) -> cv2.aruco.Dictionary:
     """Return a dictionary of OpenCV by its name.
 
     Args:
-        name: A key of `DICTIONARIES`, where case and a leading "DICT_" do not matter, or the path
-            of a file (.yml, .yaml, .json, .xml) with a custom dictionary as OpenCV writes it.
+        name: A key of `DICTIONARIES`, in upper or lower case, with or without a leading "DICT_"; or
+            the path of a file (.yml, .yaml, .json, .xml) with a custom dictionary as OpenCV writes
+            it.
 
     Raises:
-        MarkerError: When the name is unknown, or the file is missing or holds no dictionary.
-        SystemError: When OpenCV cannot parse the file as YAML, JSON or XML.
+        MarkerError: When the name is unknown, or the file is missing, malformed or holds no
+            dictionary.
     """
     if Path(name).suffix in {".yml", ".yaml", ".json", ".xml"}:
         return _dictionary_of_file(name)

@@ -37,7 +37,7 @@ def unknowns_covariance(
     M = 1 - J W J', and lacks what is most like a change of the unknowns. The missing part,
     R - M R M = R J W J' + J W J' R - J W J'RJ W J', follows from R and is added. Computed from
     what is left, the part 1 - q of R, it gives 1 - q² of R; q is by how much it raises the
-    unknowns' variance.
+    unknowns' variance, at most `_LARGEST_SHARE`.
 
     Args:
         points: Column and row of each pixel, whole numbers, shape (n, 2) [px].
@@ -51,19 +51,19 @@ def unknowns_covariance(
         Covariance of the first unknowns, shape (first, first), in their units squared.
     """
     rectangle = _Rectangle.around(points, lags=lags)
-    left = rectangle.transform(residual[:, None])
+    remaining = rectangle.transform(residual[:, None])
     waves = rectangle.transform(design)  # J
     weighted = _mixed(inverse, waves)  # W J'
     # M R M by lag, as the residual shows it; from it, in place of R, the missing part by lag
-    seen = rectangle.mean_products(left, left)
+    seen = rectangle.mean_products(remaining, remaining)
     spectrum = rectangle.spectrum(seen)
     inner = rectangle.inner(waves, spectrum)
     smeared = rectangle.masked(spectrum * waves)
     missing = rectangle.mean_products(2 * smeared - _mixed(inner, weighted), weighted)
-    by_left = _sandwich(inverse[:first], inner)
+    by_remaining = _sandwich(inverse[:first], inner)
     inner = rectangle.inner(waves, rectangle.spectrum(seen + missing))
     covariance = _sandwich(inverse[:first], inner)
-    raised = np.trace(covariance) / max(np.trace(by_left), 1e-30) - 1
+    raised = np.trace(covariance) / max(np.trace(by_remaining), 1e-30) - 1
     share = np.clip(raised, 0.0, _LARGEST_SHARE)
     return covariance / (1 - share**2)
 

@@ -211,7 +211,10 @@ def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | 
 
 
 def _improved(fit: _Fit, look: _Look) -> tuple[_Fit, float]:
-    """Take a Gauss-Newton step, corners by at most 0.1 side; return fit and largest change [px]."""
+    """Take a Gauss-Newton step; return the fit and the largest change of a corner coordinate [px].
+
+    Corners move by at most 0.1 of the shortest side, the blur by 0.5 px and within 0.3 to 8 px.
+    """
     step = look.inverse[:9] @ (look.design.T @ look.residual)
     longest = float(np.abs(step[:8]).max())
     step[:8] *= min(1.0, 0.1 * _shortest_side(fit.corners) / max(longest, 1e-12))

@@ -68,7 +68,9 @@ def square_homography(corners: ArrayLike) -> Array:
 
     Returns:
         H with (x, y, 1) ~ H (u, v, 1), shape (..., 3, 3), H[2, 2] = 1; (u, v) in the square.
-        LinAlgError where the last three corners lie exactly on a line.
+
+    Raises:
+        LinAlgError: The last three corners lie exactly on a line.
 
     >>> (square_homography([[3, 4], [5, 4], [5, 7], [3, 7]]) + 0.0).round(9).tolist()
     [[2.0, 0.0, 3.0], [0.0, 3.0, 4.0], [0.0, 0.0, 1.0]]

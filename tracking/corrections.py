@@ -191,6 +191,9 @@ def _moved(
     """Return the observation with the pose that a person set, level and at the prior's height.
 
     Of an observation found there it keeps the time, and the derivatives by camera and lens.
+
+    Raises:
+        CorrectionError: The photograph has neither an observation nor a time.
     """
     state = np.array([move.x, move.y, prior.height, 0.0, 0.0, move.yaw])
     covariance = np.zeros((6, 6))

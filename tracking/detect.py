@@ -225,6 +225,7 @@ def observe(
     Raises:
         ValueError: The line of sight to a corner of the robot's marker does not meet the plane of
             its expected height.
+        KeyError: `times` lacks a photograph of which an observation is made.
     """
     return tuple(
         _observation(fit, detection.photo, detection.robot, robot, times, edge_sd)

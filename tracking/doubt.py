@@ -45,6 +45,9 @@ def doubts(track: Track) -> tuple[SuspectValue, ...]:
 
     Args:
         track: The track, with the errors that were stated.
+
+    Returns:
+        One suspect for each of the three that was stated, and not as exact.
     """
     stated, path = track.stated, track.smoothed
     root = stated.root

@@ -187,7 +187,8 @@ def assemble_track(
         The path, smoothed with `tracking.smooth.smooth`, with its joint covariance.
 
     Raises:
-        PathError: When there is no observation or two photographs have the same time.
+        PathError: When there is no observation or two photographs have the same time, and as
+            `tracking.smooth.smooth` raises it.
     """
     if not observations:
         raise PathError("the robot is found in no photograph, or corrections delete all its poses")

@@ -208,6 +208,7 @@ def fit_pose(
 
     Raises:
         ValueError: When a point's ray does not meet the plane of the points' expected mean height.
+        LinAlgError: When `covariance` is not positive definite.
     """
     pixels = np.asarray(corners_px, dtype=float)
     whiten = np.linalg.inv(np.linalg.cholesky(np.asarray(covariance, dtype=float)))

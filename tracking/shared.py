@@ -130,7 +130,11 @@ class SharedErrors:
         return unit[:, None] * vectors[:, kept] * np.sqrt(values[kept])
 
     def given(self, causes: Sequence[str]) -> Array:
-        """Compute the covariance of all errors if those of some causes were known, shape (q, q)."""
+        """Compute the covariance of all errors if those of some causes were known, shape (q, q).
+
+        Args:
+            causes: Names of these causes, keys of `slots`; another name is a KeyError.
+        """
         rows = [np.arange(self.size)[self.slots[cause]] for cause in causes]
         known = np.concatenate([np.zeros(0, dtype=int), *rows])
         sd = np.sqrt(np.diag(self.covariance))

@@ -39,8 +39,9 @@ class SmoothPath:
         covariance: Covariance of `poses`, shape (n, 3, 3).
         twist: Forward speed, speed to the left [m/s] and turning rate [rad/s], shape (n, 3).
         segment: Number, from 0, of the stretch without gap that each sample is in, shape (n,).
-        suspect: True where the squared Mahalanobis distance of a measured pose from the path, by
-            the covariance of the measurement, exceeds 25 (3 degrees of freedom), shape (n,).
+        suspect: True where the squared Mahalanobis distance of a measured pose, with the estimated
+            shared errors added, from the path exceeds 25, by the covariance of the measurement (3
+            degrees of freedom), shape (n,).
         process: The noise densities used, given or estimated.
         own: Covariance of pose and twist if the shared errors were known, shape (n, 6, 6).
         following: The same between each sample and the next, shape (n - 1, 6, 6); zero over gaps.
@@ -103,8 +104,9 @@ def smooth(
         The path, at the times `t` only.
 
     Raises:
-        PathError: When there is no pose, times do not increase, shapes disagree, or a covariance
-            is not positive definite.
+        PathError: When there is no pose, times do not increase, shapes disagree, a covariance is
+            not positive definite, or standard deviations and intervals of time differ by more than
+            numbers can hold.
     """
     times, measured, spread = _checked(t, poses, covariance)
     stamp_sd = np.broadcast_to(np.asarray(time_sd, dtype=float), times.shape)
@@ -205,7 +207,7 @@ def _estimated(problem: ChainProblem, near: Process | None, average: bool) -> Pr
     not. Without a segment of three poses the densities are 1e-3 m²/s³ and 1e-2 rad²/s³.
 
     The likeliest densities are searched from `near`, or from a walking robot's if it is None. With
-    `average`, each is replaced by the mean of its standard deviation over the likelihood along
+    `average`, each is replaced by the mean of its standard deviation over the posterior along
     `_AROUND`, the other two held at their likeliest.
     """
     used = [part.head(_LONGEST_SEARCH) for part in problem.parts if len(part.times) > 2]
@@ -215,7 +217,10 @@ def _estimated(problem: ChainProblem, near: Process | None, average: bool) -> Pr
     point = [searched.start()]
 
     def minus_log_likelihood(logs: Array) -> float:
-        """Return minus the log posterior of the logarithms (3,) of a `Process`."""
+        """Return minus the log posterior of the logarithms (3,) of a `Process`.
+
+        Infinite where the normal equations are not positive definite.
+        """
         # A wide prior around a walking robot's values keeps a path that shows no disturbance
         # at all (all its scatter is measurement noise) from sending them to zero.
         prior = 0.5 * float(np.sum(((logs - np.log(_USUAL)) / _USUAL_SD) ** 2))

@@ -83,7 +83,7 @@ def find_board(
         corners of a ChArUco board are.
 
     Raises:
-        MarkerError: When there is no dictionary of the ChArUco board's name for it.
+        MarkerError: When the dictionary that a ChArUco board names is unknown.
     """
     grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
     if isinstance(board, Checkerboard):
@@ -116,8 +116,8 @@ def _find_checkerboard(
 def _refinement_reach(grid: NDArray) -> int:
     """Compute half the window of subpixel refinement for corners (rows, columns, 2) [px].
 
-    It is as wide as possible without a neighbour's edges, which 0.4 squares exclude under any
-    perspective in which a board can be detected.
+    It is 0.4 of the least distance between neighbours, within 2 to 11: as wide as possible without
+    a neighbour's edges under any perspective in which a board can be detected.
     """
     steps = [np.linalg.norm(np.diff(grid, axis=axis), axis=2).min() for axis in (0, 1)]
     return int(np.clip(0.4 * min(steps), 2, 11))

@@ -27,7 +27,7 @@ LENS_MODELS = {
 # Indices, of fx, fy, cx, cy, k1, k2, p1, p2, k3, that a model fits.
 _FITTED = {"none": list(range(4)), "k1": list(range(5)), "k1-k2": list(range(6)),
            "full": list(range(9))}  # fmt: skip
-_FOLDS, _AS_GOOD = 5, 1.01
+_FOLDS, _AS_GOOD = 5, 1.01  # of cross-validation; largest ratio to the least mean square
 _IMPROBABLE = 0.05  # probability that no term left out matters, below which more are fitted
 _ALIKE, _LEAST_ALIKE = 3.0, 0.3  # smooth error over noise [-], and [px], that is worth a remark
 _BLURRED = 0.5  # noise of a corner that is worth a remark [px]
@@ -70,8 +70,9 @@ class CameraCalibration:
     def warnings(self) -> tuple[str, ...]:
         """Warnings, one sentence each.
 
-        Coverage below 0.6, fewer than 10 pictures, pictures of over 3 times the median residual,
-        corners that err far more than they can be detected.
+        Coverage below 0.6; fewer than 10 pictures; pictures of over 3 times the median residual;
+        an error alike in neighbouring corners of over 0.3 px and 3 times a corner's own error; and
+        an own error of over 0.5 px.
         """
         return tuple(_warnings(self))
 
@@ -193,7 +194,11 @@ class _Calibrated(NamedTuple):
 
 
 def _calibrated(views: Sequence[SeenBoard], size: tuple[int, int], lens_model: str) -> _Calibrated:
-    """Fit lens and poses of the board by OpenCV's unweighted least squares."""
+    """Fit lens and poses of the board by OpenCV's unweighted least squares.
+
+    Raises:
+        CalibrationError: OpenCV fails.
+    """
     points = [view.points.astype(np.float32) for view in views]
     corners = [view.corners_px.astype(np.float32) for view in views]
     try:

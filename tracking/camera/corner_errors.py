@@ -136,10 +136,10 @@ def _of_lens(boards: Sequence[FittedBoard], reach: float, noise: float, ratio: f
     for board in boards:
         n = len(board.points)
         by_pose, by_lens = board.by_pose.reshape(2 * n, 6), board.by_lens.reshape(2 * n, k)
-        left = by_lens - by_pose @ np.linalg.lstsq(by_pose, by_lens, rcond=None)[0]
+        reduced = by_lens - by_pose @ np.linalg.lstsq(by_pose, by_lens, rcond=None)[0]
         V = noise**2 * (np.eye(n) + ratio**2 * _likeness(board.points, reach))
-        information += left.T @ left
-        by_corner = left.reshape(n, 2, k)
+        information += reduced.T @ reduced
+        by_corner = reduced.reshape(n, 2, k)
         scatter += np.einsum("nai,nm,maj->ij", by_corner, V, by_corner)
     inverse = np.linalg.inv(information)
     return inverse @ scatter @ inverse

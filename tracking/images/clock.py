@@ -87,7 +87,7 @@ def clock_offset(path: Path, *, renewal: float = 0.1) -> CameraClockOffset:
 
     Raises:
         PhotoError: When the photograph cannot be read, shows no QR clock or has no EXIF time.
-        OSError: When the file may not be opened.
+        OSError: When the folder of the file may not be searched.
     """
     shown = read_clock(read_pixels(path))
     if shown is None:

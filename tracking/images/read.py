@@ -73,7 +73,7 @@ def find_photos(folder: Path) -> tuple[Path, ...]:
 
 
 def _counting(name: str) -> list[tuple[int, int, str]]:
-    """Return a key for natural order: digits compare as numbers, all else without case."""
+    """Return a key for natural order: digits compare as numbers, letters by their lower case."""
     parts = re.split(r"(\d+)", name.lower())
     return [(1, int(part), "") if part.isdigit() else (0, 0, part) for part in parts]
 
@@ -90,9 +90,10 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
 
     Raises:
         PhotoError: When the file is missing, not readable, not a regular file, empty, HEIC or of an
-            unknown format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for what
-            Pillow raises inside the `with` block. Other exceptions of the block are raised
-            unchanged.
+            unknown format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for
+            an OSError and for what Pillow raises inside the `with` block. Other exceptions of the
+            block are raised unchanged.
+        OSError: When the folder of the file may not be searched.
     """
     _refuse_unreadable(path)
     try:
@@ -138,7 +139,7 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
     Raises:
         PhotoError: When the file cannot be read (see `open_picture`), has more than `MOST_SCANS`
             scans, or is not of the given size.
-        OSError: When the file may not be opened.
+        OSError: When the folder of the file may not be searched.
     """
     upright = _upright(path)
     if size is not None and upright.size != size:

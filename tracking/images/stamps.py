@@ -16,7 +16,7 @@ from scipy.spatial import HalfspaceIntersection
 
 from model.arrays import Array
 
-_JITTERS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2)
+_JITTERS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2)  # tried in this order [s]
 
 
 @dataclass(frozen=True)

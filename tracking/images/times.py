@@ -48,7 +48,10 @@ def exif_time(path: Path) -> tuple[float, float] | None:
     Returns:
         Seconds since 1970 by the camera's clock, taken as UTC [s], and the step of the stamp: 1 s,
         or less where EXIF has a fraction of a second, of up to 9 digits [s]. None where the picture
-        cannot be read or EXIF has no valid time; OSError where the file may not be opened.
+        cannot be read or EXIF has no valid time.
+
+    Raises:
+        OSError: The folder of the file may not be searched.
     """
     try:
         with open_picture(path) as picture:
@@ -81,6 +84,7 @@ def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
 
     Raises:
         TimesError: When a photograph has no EXIF time or cannot be read.
+        OSError: As `exif_time`.
     """
     stamps = [exif_time(path) for path in paths]
     without = [path.name for path, stamp in zip(paths, stamps, strict=True) if stamp is None]
@@ -164,7 +168,11 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
 
 
 def _numbers(table: Path, line: int, row: dict[str, str]) -> tuple[float, float]:
-    """Parse `t_s` and `t_sigma` of one row, 0 where empty; raise `TimesError` if not finite."""
+    """Parse `t_s` and `t_sigma` of one row, 0 where empty.
+
+    Raises:
+        TimesError: One of them is not a finite number.
+    """
     numbers, place = [], f"{table}, row {line} {_HEADER}"
     for column in ("t_s", "t_sigma"):
         text = row.get(column) or "0"

@@ -117,7 +117,7 @@ def track_by_look(
 def _click_notes(
     scene: Scene, views: Mapping[str, CameraPose], corners: Mapping[str, RefinedCorners]
 ) -> list[str]:
-    """Say which clicks do not fit the top as it is stated, or its edges."""
+    """Return a sentence for each top whose clicks do not fit its stated size, or else its edges."""
     notes = []
     for top in scene.tops:
         clicked = pose_of_top(top, scene, views[top.photo])
@@ -294,6 +294,9 @@ def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> AnnotatedPose
         scene: Scene, of which the camera and the prior of height and tilt are used; the camera
             is that for which `view` was fitted.
         view: Pose of the camera in the annotated photograph.
+
+    Raises:
+        ValueError: As `fit_pose`.
     """
     covariance = top.corner_sd_px**2 * np.eye(8)
     return _pose_at(np.array(top.corners_px), covariance, top, scene, view)

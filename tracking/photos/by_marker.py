@@ -43,10 +43,12 @@ def edge_spread(
     Returns:
         The spread by floor and walk; that of `fit` where fewer than 3 photographs are usable. The
         walk's likelihood is made non-decreasing: it tells only how large the spread is at least.
+        Spreads below the first that the floor's markers give over `_NEGLIGIBLE` get probability 0.
 
     Raises:
-        CorrectionError: A correction names a photograph without a pose, or one twice.
-        PathError: Two photographs have the same time, after corrections of it.
+        CorrectionError: A correction names a photograph without a pose, or whose pose an earlier
+            one has deleted.
+        PathError: Two photographs have the same time.
     """
     usable = [each for each in detections if each.robot is not None]
     usable = [each for each in usable if each.photo not in fit.unused]

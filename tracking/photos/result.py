@@ -122,8 +122,8 @@ def finish(
 def _robot_notes(track: Track, seen: FloorSeen) -> tuple[str, ...]:
     """Return warnings of stated values of the robot that do not fit.
 
-    None of them but the heading where lens or floor do not fit, as what is wrong there also shows
-    in the size and height of the robot.
+    Where a value of lens or floor does not fit (`FloorFit.suspicion`), only the heading is judged:
+    what is wrong there also shows in the size and height of the robot.
     """
     if seen.fit.suspicion:
         return heading_doubts(track)

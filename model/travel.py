@@ -207,7 +207,7 @@ def _differences(poses: Poses, window: int) -> Array:
 
 
 def _counted(poses: Poses, chord: float) -> NDArray[np.intp]:
-    """Return the indices of the poses that count, the first and the last among them.
+    """Return the increasing indices of the poses that count, the first and the last among them.
 
     A pose counts if it is a chord [m] or more from the last one that counted; with a chord of zero,
     if it is in another place. The last pose takes the place of the one that counted last if it is

@@ -260,6 +260,7 @@ def _by_scores(
             weighed.append(weigh_law(name, fit, rng=rng))
 
     def progress(share: float) -> None:
+        """Report the share done; raise `FitStopped` if a stop is requested."""
         watcher.step("comparing laws without runs and loads", share)
         if watcher.stop_requested():
             raise FitStopped(None)

@@ -86,6 +86,7 @@ def measured_force(
     slip = slip - epsilon * slip_per_radius_error(slip, definition)
 
     def force(load: Array) -> Array:
+        """Compute the measured traction at a true load, shape (n,) [N]."""
         return (1 + g_t) * (law.force(slip, load, values[:k]) - c_r * load)
 
     load = np.maximum((1 + g_n) * normal_force - b_n, 1e-9)

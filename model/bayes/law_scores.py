@@ -186,6 +186,7 @@ def weigh_law(name: str, fit: PreparedFit, *, rng: np.random.Generator) -> Weigh
     draws = weighted_draws(posterior.log_density, approximation, n=DRAWS, wanted=ENOUGH, rng=rng)
 
     def predicted(group: NDArray[np.intp]) -> ByWeights:
+        """Predict each group of runs, (n_runs,), without its data."""
         return by_weights(posterior, draws, group, approximation=approximation, rng=rng)
 
     group, loads = load_groups(blocks)

@@ -48,16 +48,18 @@ def least_squares_values(
     scale = float(np.std(blocks.traction_force)) / 20
 
     def values(z: Array) -> Array:
+        """Map coordinates z (k,) to values of the law's parameters (k,)."""
         return np.array([prior.value(x) for prior, x in zip(chosen, z, strict=True)])
 
     def misfit(z: Array) -> Array:
-        """Return scaled residuals, then z, which is standard normal a priori."""
+        """Return the n scaled residuals, then z, standard normal a priori, shape (n + k,)."""
         with np.errstate(all="ignore"):
             force = law.force(blocks.slip, blocks.normal_force, values(z))
         # A trial may be beyond all numbers: NaN counts as no force, infinity as the largest float.
         return np.append((blocks.traction_force - np.nan_to_num(force)) / scale, z)
 
     def valid(z: Array) -> bool:
+        """Return whether the law is valid at z at each of `loads`."""
         with np.errstate(all="ignore"):
             return bool(np.all(law.valid(loads, values(z))))
 

@@ -106,6 +106,7 @@ def force_rows(
     k = len(posterior.law.parameters)
 
     def force(at: Array) -> Array:
+        """Compute the traction at coordinates (m, d), shape (m, n) [N]."""
         return posterior.law.force(slip, load, posterior.values(at)[:, :k].T[:, :, None])
 
     return force(z), _derivative(z, force)

@@ -307,7 +307,7 @@ def _through(samples: Samples, t: Array, theta: Array, half: float) -> tuple[Arr
     A leg that speeds up and slows down all the time has lines of few samples, which may miss
     samples beside the next line, or meet it beyond the counts before and after. The samples on
     either side become corners as well, and a corner between them from which the leg would jump is
-    left out.
+    left out. Returns times and angles of all corners, (m,) each.
     """
     left = np.searchsorted(samples.t, t, side="right") - 1
     right = np.minimum(np.searchsorted(samples.t, t), len(samples.t) - 1)
@@ -331,6 +331,7 @@ def _without_jumps(t: Array, theta: Array) -> tuple[Array, Array]:
     """Merge corners between which a leg would turn faster than `FASTEST`, to their mean.
 
     Lines through few changes of count may meet the next line before they met the one before.
+    Returns times and angles of the corners that remain, (m,) each.
     """
     while (fast := np.abs(np.diff(theta)) > FASTEST * np.diff(t)).any():
         i = int(np.argmax(fast))

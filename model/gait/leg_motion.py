@@ -81,8 +81,8 @@ def _by_pace(theta: Array) -> Array:
     """Resample leg angles at steps `PACE` of the legs' mean rotation, without rows at rest.
 
     Samples are thinned out, by factors of two, until the typical rotation between them exceeds
-    `_ENOUGH`; at rest are those that rotate by less than `_STILL` of it. No rows are returned
-    where nothing moves, or fewer than three samples are left.
+    `_ENOUGH`; at rest are those that rotate by less than `_STILL` of it. The result has shape
+    (m, 6), m = 0 where nothing moves or fewer than three samples are left.
     """
     every, typical, rows, steps = 1, 0.0, theta, np.zeros(0)
     while typical < _ENOUGH:

@@ -104,6 +104,7 @@ def _consistent_orders(motion: LegMotion, direction: Array) -> tuple[tuple[int, 
     """
 
     def consistent(order: tuple[int, ...]) -> bool:
+        """Return whether the gait is plausible, with `_REGULAR`, if legs are in this order."""
         phase, turned = (_by_leg(order, values) for values in (motion.phase, direction))
         return _plausible(phase, turned, _REGULAR)
 

@@ -100,7 +100,10 @@ def _leg_intervals(t: Array, past_touchdown: Array, stance_angle: float) -> Arra
 
 
 def _crossings(t: Array, angle: Array) -> Array:
-    """Compute the times [s] at which an angle, linear between samples, is a multiple of 2 pi."""
+    """Compute the times [s] at which an angle, linear between samples, crosses a multiple of 2 pi.
+
+    They are sorted by the multiple, not by time; there may be none.
+    """
     turns = angle / (2 * np.pi)
     levels = np.arange(np.ceil(turns.min()), np.floor(turns.max()) + 1)
     found = [_level_crossings(t, turns - level) for level in levels]

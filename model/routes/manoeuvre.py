@@ -185,6 +185,7 @@ def fitted(
     """
 
     def walked(values: Array) -> Fitted:
+        """Walk the manoeuvre with these values of the free fields."""
         changed = _with(parts, free, values)
         end = walked_end(changed, stepping, around)
         return Fitted(changed, end, float(np.linalg.norm(goal.missed(end.tolist()))))

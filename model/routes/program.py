@@ -136,7 +136,7 @@ def lay_out(
     legs, done = ProgramLegs.beginning_with(first), list[SegmentEnd]()
 
     def added(longer: ProgramLegs, share: float) -> None:
-        """Check the program's duration, and report progress."""
+        """Report progress; raise `DomainError` if the program is longer than `longest`."""
         if longer.end > longest:
             raise DomainError(
                 f"the program would last {longer.end:.4g} s or more; at most {longest:g} s are "
@@ -189,7 +189,10 @@ def _repeated(legs: ProgramLegs, gait: CycleGait, cycles: int, added: _Added) ->
 def _lasting(
     legs: ProgramLegs, gait: CycleGait, time: float, added: _Added
 ) -> tuple[ProgramLegs, int]:
-    """Return the program with cycles that last a time or longer [s], and their number."""
+    """Return the program with cycles that last a time or longer [s], and their number.
+
+    Raises `DomainError` if `MOST_CYCLES` do not last as long.
+    """
     began = legs.end
     for cycle in range(1, MOST_CYCLES + 1):
         legs = legs.with_cycle(gait)
@@ -206,7 +209,10 @@ def _lasting(
 def _walked_near(
     legs: ProgramLegs, segment: Segment, walk: GrowingWalk, added: _Added
 ) -> tuple[ProgramLegs, int]:
-    """Return the program with cycles until the robot is in a circle, and their number."""
+    """Return the program with cycles until the robot is in a circle, and their number.
+
+    Raises `DomainError` after `MOST_CYCLES`, or for a segment that does not end near a place.
+    """
     if segment.gait is None or segment.until is None or segment.until.near is None:
         raise DomainError("expected a segment that ends near a place")
     goal_x, goal_y, radius = segment.until.near
@@ -237,6 +243,9 @@ def _turned(
     Returns:
         The program, the number of cycles added, and how much further than asked for the robot
         turned, negative if less [rad].
+
+    Raises:
+        DomainError: After `MOST_CYCLES` the robot has not turned as far.
     """
     start, turned, tries = walk.pose(legs)[2], 0.0, 0
     for cycles in range(1, MOST_CYCLES + 1):

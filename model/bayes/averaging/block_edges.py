@@ -51,7 +51,7 @@ def block_starts(
 
 
 def _even_starts(edges: NDArray[np.intp], length: int) -> NDArray[np.intp]:
-    """Cut each part between two edges into blocks of nearly equal size; the last edge is last."""
+    """Cut parts between edges into nearly equal blocks; return their starts and the last edge."""
     parts = [
         np.linspace(first, last, max(1, round((last - first) / length)) + 1).round()[:-1]
         for first, last in pairwise(edges)
@@ -103,7 +103,7 @@ def _jumps(slip: Array, starts: NDArray[np.intp], noise: Array) -> NDArray[np.in
 
 
 def _spaced(cuts: NDArray[np.intp], edges: NDArray[np.intp], length: int) -> NDArray[np.intp]:
-    """Keep the cuts that leave no part shorter than half a block, the earlier of two first."""
+    """Return the cuts that leave no part shorter than half a block; of two the earlier is kept."""
     kept: list[int] = []
     for cut in cuts.tolist():
         after = np.searchsorted(edges, cut, side="right")

@@ -170,6 +170,7 @@ def _moments(samples: SlipSamples, starts: NDArray[np.intp]) -> _Moments:
     count = np.diff(starts)
 
     def mean(values: Array) -> Array:
+        """Average one value a sample over each block."""
         return np.add.reduceat(values, starts[:-1]) / count
 
     slip, load, force = (

@@ -47,6 +47,8 @@ def faults(
 ) -> tuple[Check, ...]:
     """Make the checks of single samples, of runs and of the values against their priors.
 
+    Those of friction, swing, length of runs and fast noise are left out where they do not apply.
+
     Args:
         posterior: The posterior of the fit.
         fit: The fit, linearised.

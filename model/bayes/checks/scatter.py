@@ -77,7 +77,10 @@ def friction_scatter(fit: Linearised, explained: Array) -> FrictionScatter | Non
 
 
 def _best(mean: Array, noise: Array, shape: Array, sizes: Array) -> tuple[float, float]:
-    """Maximise the log likelihood of run means with variance noise + x² shape over sizes x."""
+    """Maximise the log likelihood of run means with variance noise + x² shape over sizes x.
+
+    Returns the largest log likelihood, but for a constant, and its size.
+    """
     variance = noise + sizes[:, None] ** 2 * shape
     values = -0.5 * np.sum(mean**2 / variance + np.log(variance), axis=1)
     best = int(np.argmax(values))

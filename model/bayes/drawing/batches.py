@@ -23,6 +23,7 @@ def in_batches(log_density: LogDensity, threads: int) -> LogDensity:
     """
 
     def spread(z: Array) -> Array:
+        """Compute the log density (w,) of coordinates (w, d), one batch a call."""
         size = SMALL if len(z) < MANY else LARGE
         batches = [z[first : first + size] for first in range(0, len(z), size)]
         if threads == 1 or len(batches) == 1:

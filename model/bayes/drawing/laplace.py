@@ -70,7 +70,7 @@ class LaplaceMixture:
 
     @cached_property
     def weights(self) -> Array:
-        """Weights of the parts by evidence, at least about a tenth of an equal share [-]."""
+        """Weights of the parts by evidence, at least about a tenth of an equal share, (parts,)."""
         evidence = np.array([laplace.log_evidence() for laplace in self.parts])
         share = np.exp(evidence - evidence.max())
         share = np.maximum(share / share.sum(), 0.1 / len(share))
@@ -267,6 +267,7 @@ def _climb_scaled(log_density: LogDensity, start: Array, covariance: Array) -> t
     root = vectors * np.sqrt(eigenvalues)
 
     def negative(u: Array) -> tuple[float, Array]:
+        """Return minus the log density and its gradient by u; outside the support 1e12 and 0."""
         value, slope = _value_and_gradient(log_density, start + root @ u)
         if not np.isfinite(value):
             return 1e12, np.zeros_like(u)

@@ -152,6 +152,7 @@ def advance(
         raise DomainError(f"steps is {steps}; expected 1 or more")
 
     def walk(ensemble: int) -> EnsembleSampler:
+        """Sample one ensemble, by moves of its own."""
         moves = _moves(jumps)
         return _walk(log_density, chains, moves, ensemble=ensemble, steps=steps)
 
@@ -214,6 +215,7 @@ def _jump_to(
     """
 
     def propose(z: Array, rng: np.random.RandomState) -> tuple[Array, Array]:
+        """Draw as many points as z (w, d) has; return them and the log Hastings factors (w,)."""
         # A generator of its own: RandomState hides half a pair of normals from its state array.
         drawn = proposal.draw(len(z), rng=np.random.default_rng(rng.randint(2**31)))
         return drawn, proposal.log_pdf(z) - proposal.log_pdf(drawn)

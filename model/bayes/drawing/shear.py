@@ -68,7 +68,7 @@ class Shear:
         ]
 
     def sheared(self, x: Array) -> Array:
-        """Map straightened coordinates x to z."""
+        """Map straightened coordinates x to z, shape (..., d)."""
         return x + self._shifted(x)
 
     def straightened(self, z: Array) -> Array:
@@ -175,7 +175,7 @@ class _Ridge:
         return s, height
 
     def _step(self, v: Array, s: Array) -> tuple[Array, Array]:
-        """Make one damped Newton step of each point's narrow coordinates, as `settle`.
+        """Make one damped Newton step of each point's narrow coordinates; results as of `settle`.
 
         These are in standard deviations at the mode, so that the gradient is the Newton step.
         """

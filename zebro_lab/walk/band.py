@@ -94,7 +94,11 @@ def _leg_state(
     informed: InformedLegs | None,
     rng: np.random.Generator,
 ) -> LegState:
-    """Draw states of legs and floor from the posterior of fitted walks, else from the prior."""
+    """Draw states of legs and floor from the posterior of fitted walks, else from the prior.
+
+    Raises:
+        SettingsError: A standard deviation of leg offsets is requested beside fitted walks.
+    """
     if informed is None:
         offset_sd = np.radians(offset_sd_deg(request, legs))
         return LegState.of_prior(request.draws, offset_sd=offset_sd, anisotropy=ANISOTROPY, rng=rng)

@@ -84,7 +84,10 @@ def _cell(value: float | None, scale: float) -> str:
 
 
 def touchdown_summary(downs: Sequence[Touchdown]) -> dict[str, float | None]:
-    """Summarise touchdowns of a leg: counts, means and standard deviations, None without any.
+    """Summarise touchdowns of a leg: counts of turns, means and standard deviations [rad, s].
+
+    A mean is None if no value is known, a standard deviation if fewer than two are. Touchdowns
+    after the first in the same turn are counted as `again`.
 
     Args:
         downs: Touchdowns of one leg; turns without contact count as missed.

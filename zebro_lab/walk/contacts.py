@@ -69,6 +69,8 @@ def contacts_of(
 ) -> WalkContacts:
     """Find contact states, their cycle and the touchdowns of a walk.
 
+    States may differ from a repetition by `_REPEATS` of a cycle, or two time steps if that is more.
+
     Args:
         path: The walk.
         reference: Leg angles that it was computed from.
@@ -105,7 +107,8 @@ def _scheduled(
 def _turn_time(t: Array, theta: Array) -> float | None:
     """Return the duration of a turn of the legs [s], the median; None unless all are about equal.
 
-    All turns of all legs must differ by at most `_STEADY` of it, and each leg turn once or more.
+    All turns of all legs must differ by at most `_STEADY` of it, and each leg must turn at least
+    once from 0.1 rad beyond its first angle on.
 
     Args:
         t: Times, shape (n,) [s].
@@ -126,7 +129,8 @@ def _turn_time(t: Array, theta: Array) -> float | None:
 def write_contacts(file: Path, contacts: WalkContacts) -> None:
     """Write the contact states of a walk as CSV, one row a state, SI.
 
-    Cycles begin with the gait's, and are counted from the one in which the walk begins to repeat.
+    The column `cycle` counts cycles of the gait from 1, the first that repeats; it is empty before
+    that, and in a walk without a cycle.
 
     Args:
         file: File to write; an existing one is overwritten.

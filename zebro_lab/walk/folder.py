@@ -68,7 +68,7 @@ _BATCH = 10_000
 
 
 def leg_columns(*names: str) -> tuple[str, ...]:
-    """Return column names, for each quantity those of the legs."""
+    """Return the column names of quantities for all legs: `theta` gives `theta1` to `theta6`."""
     return tuple(f"{name}{leg}" for name in names for leg in range(1, N_LEGS + 1))
 
 
@@ -260,8 +260,9 @@ def read_draws(folder: Path) -> Poses:
 def measured_sources(manifest: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the sources of the data that a walk was computed from, not of the computed path.
 
-    They are those of leg angles, slip law and fitted walks. Of a walk whose leg angles are those of
-    a gait, it is the source of the walk itself.
+    They are those of leg angles, slip law and fitted walks, each once, without slip laws that are
+    "assumed" or the "thesis"'s. If the leg angles are those of a gait, it is the walk's own source;
+    "unknown" if the manifest states none.
 
     Args:
         manifest: Content of the walk's manifest.
@@ -281,6 +282,9 @@ def measured_sources(manifest: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def doubts(manifest: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return why the slip law or fitted walks of a walk cannot be trusted, a warning for each."""
+    """Return why the slip law or fitted walks of a walk cannot be trusted, a warning for each.
+
+    Empty if they can, or if the manifest does not say.
+    """
     settings = manifest.get("settings") or {}
     return tuple(map(str, settings.get("doubts") or ()))

@@ -33,7 +33,7 @@ class InformedLegs:
         folder: The folder `walks/` that the posterior was read from.
         source: Sources of the walks and of the slip law that they were fitted with.
         notes: Notes, one line each.
-        doubts: A warning if the fit is not reliable, one of the notes; else nothing.
+        doubts: A warning if the fit is not reliable, one of the notes; else empty.
     """
 
     posterior: WalkPosterior
@@ -87,8 +87,10 @@ def informed_legs(
         described: Parameters of the robot that walks.
         logs: Files of the walk's leg log, by whose hash a fitted walk is recognised; missing ones
             are skipped.
-        same_legs: Whether the legs are those that were fitted, else only the floor applies; None
-            to compare the parameters of the two robots.
+        same_legs: None to compare the legs' parameters with those of the robot that was fitted:
+            where they are equal legs and floor apply, else the floor alone. False if the leg angles
+            are exact, as those of a walk folder, and need no offset: the floor alone applies. True
+            to apply legs and floor to any robot.
     """
     same = walks.legs == describe_legs(described) if same_legs is None else same_legs
     names = ", ".join(walks.posterior.walks)

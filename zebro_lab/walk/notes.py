@@ -14,6 +14,8 @@ from zebro_lab.ground.ground_file import GroundFile
 def ground_notes(ground: GroundFile, path: WalkPath, robot: Robot) -> tuple[str, ...]:
     """Return notes on a walk's ground, one line each: its parts, and a warning beyond its map.
 
+    The robot is beyond the map where any of its hips is, seen from above with level body.
+
     Args:
         ground: The ground.
         path: The walk.
@@ -47,7 +49,7 @@ def largest_speeds(reference: CyclicReference | SampledReference) -> Array:
 def speed_warnings(
     reference: CyclicReference | SampledReference, limit: float | None
 ) -> tuple[str, ...]:
-    """Return a warning if a leg turns faster than the robot's legs can; else nothing.
+    """Return a warning if a leg turns faster than the robot's legs can; else an empty tuple.
 
     Args:
         reference: Leg angles over time.

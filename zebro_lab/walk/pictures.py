@@ -44,11 +44,12 @@ _THESIS_DYNAMICS = {
 
 
 def draw_walk(folder: Path, walked: Walked, request: PictureRequest) -> None:
-    """Draw path, motion, orientation, slip ratios, forces, leg angles and contacts of a walk.
+    """Draw path, snapshots, motion, orientation, slip, forces, leg angles and contacts of a walk.
 
     Slip, forces, angles and contacts are drawn for the last two cycles of walking, when the walk is
-    steady; in a window of time, if one is asked for, together with motion and orientation. Of a
-    gait touchdown and lift-off are drawn too, and a slip law that is a curve.
+    steady; in a window of time, if one is asked for, together with motion and orientation. There
+    are further pictures of the legs at touchdown and lift-off for a cyclic gait, of the slip law if
+    it is a curve, and of its own quantities for the thesis's model.
 
     Args:
         folder: Folder to write the pictures into.

@@ -97,7 +97,9 @@ def read_prediction(path: Path) -> PredictionFile:
 def _anisotropy(manifest: Mapping[str, Any]) -> tuple[str, ...]:
     """Return a note on how traction across the legs may differ from that along them in a band.
 
-    Manifests of earlier versions do not say: their bands took both to be alike.
+    The manifest's factor is 1 for traction alike in both directions, which also holds for earlier
+    versions that do not say; None for the lateral traction of fitted walks; else one standard
+    deviation of the ratio of both, as a factor.
     """
     settings = manifest["settings"]
     factor = (settings.get("band") or {}).get("anisotropy", NOT_SAID)

@@ -51,8 +51,8 @@ def read_program(file: Path, *, leg_arc: float) -> Program:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: It is no TOML, has no `[[segment]]`, a key or value is invalid, or a gait is
-            impossible; the message names file, segment and key.
+        SettingsError: It is no TOML, has no `[[segment]]` or only stands, a key or value is
+            invalid, or a gait is impossible; the message names file, segment and key.
     """
     table = read_settings(file, advice="expected a program.toml with [[segment]] tables")
     found = table.value("segment", [])
@@ -86,6 +86,8 @@ def groups_of(text: str) -> Gait:
 
 def even_times(cycle: float, groups: Gait) -> tuple[float, float]:
     """Return ground and flight time of a cycle that the groups share evenly [s].
+
+    The flight time is the cycle over the number of groups, over two for a single group.
 
     Args:
         cycle: Duration of the cycle [s].
@@ -137,7 +139,11 @@ def _gait(table: SettingsTable, groups: Gait, leg_arc: float) -> tuple[CycleGait
 
 
 def _times(table: SettingsTable, groups: Gait) -> tuple[float, float]:
-    """Return ground and flight time [s]: both as given, else a cycle that groups share evenly."""
+    """Return ground and flight time [s]: both as given, else a cycle that groups share evenly.
+
+    That is the `cycle` of the table, else `CYCLE`; `SettingsError` if it is beside one of the
+    times.
+    """
     if any(name in table for name in _TIMES):
         if "cycle" in table:
             raise table.fault("found beside ground_time or flight_time; give either", "cycle")
@@ -149,7 +155,7 @@ def _times(table: SettingsTable, groups: Gait) -> tuple[float, float]:
 
 
 def _until(table: SettingsTable) -> Until:
-    """Read when a segment ends: exactly one of `_ENDS`."""
+    """Read when a segment ends; raise `SettingsError` unless exactly one of `_ENDS` is given."""
     given = [name for name in _ENDS if name in table]
     if len(given) != 1:
         raise table.fault(
@@ -171,7 +177,7 @@ def _until(table: SettingsTable) -> Until:
 
 
 def _seconds(table: SettingsTable, key: str, *, least: float = _SHORTEST) -> float:
-    """Read a time from `least`, by default 10 ms, to 1000 s."""
+    """Read a time from `least` [s], by default 10 ms, to 1000 s; raise `SettingsError` beyond."""
     value = table.quantity(key, "s", least=least)
     if value > _LONGEST:
         raise table.fault(f"is {value:g} s; expected at most {_LONGEST:g} s", key)
@@ -179,7 +185,7 @@ def _seconds(table: SettingsTable, key: str, *, least: float = _SHORTEST) -> flo
 
 
 def _degrees(table: SettingsTable, key: str) -> float:
-    """Read an angle in degrees; one that would be usual in radians is refused."""
+    """Read an angle [deg]; refuse one below `LEAST_DEG` other than 0, which may be in radians."""
     angle = table.number(key)
     if 0 < abs(angle) < LEAST_DEG:
         raise table.fault(

@@ -103,7 +103,12 @@ def _named(file: Path) -> str:
 
 
 def _slip(program: Program, request: ModelRequest) -> NamedSlip | None:
-    """Return the slip law with which headings and places are found; None if no segment has one."""
+    """Return the slip law with which headings and places are found; None if no segment has one.
+
+    Raises:
+        SettingsError: A segment has one, and the model is not "dynamics" or the slip law is missing
+            or invalid.
+    """
     if not program.needs_walking:
         return None
     if request.model != _WALKS or request.slip is None:
@@ -118,7 +123,9 @@ def _slip(program: Program, request: ModelRequest) -> NamedSlip | None:
 def surroundings_of(
     slip: NamedSlip, request: ModelRequest, described: RobotFile, ground: GroundFile | None
 ) -> Surroundings:
-    """Return what programs are walked with to find where they end, as fitted walks correct it.
+    """Return robot, slip law, time step and ground for walking a program to find where it ends.
+
+    Where the slip law has fitted walks, these correct the robot's legs and the traction.
 
     Args:
         slip: The slip law.
@@ -142,7 +149,7 @@ def surroundings_of(
 def _unwalked(
     request: ModelRequest, described: RobotFile, ground: GroundFile | None
 ) -> Surroundings:
-    """Return what programs are laid out with of which no segment needs walking."""
+    """Return robot, time step and ground, without slip law, for a program that needs no walking."""
     options = DynamicsOptions(dt=time_step(request, MODELS[request.model], None))
     return Surroundings(described.robot, None, options, _heights(ground))
 

@@ -47,8 +47,9 @@ class BandRequest:
         """Check the values.
 
         Raises:
-            SettingsError: The number of draws is 1 or negative, their standard deviation of leg
-                offsets is negative, or a scheduler is given without draws.
+            SettingsError: The number of draws is 1 or negative, the standard deviation of leg
+                offsets is negative and there are draws, or the address of a scheduler has another
+                form or is given without draws.
         """
         _ = self.workers  # checks the address
         if self.draws < 2 and self.draws != 0:
@@ -117,7 +118,7 @@ class PictureRequest:
 
     @property
     def snapshots(self) -> tuple[float, ...]:
-        """Times of `--at`, none if it was not given [s]."""
+        """Times of `--at` [s]; empty if it was not given."""
         return () if self.at is None else self.at.t
 
 
@@ -316,6 +317,6 @@ class PredictRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Paths of the leg log, `--columns`, `--slip` and `--robot`, those given, as written."""
+        """Paths of leg log, `--columns`, `--slip`, `--robot` and `--ground`, as far as given."""
         columns = () if self.columns is None else (self.columns,)
         return (self.log, *columns, *self.model.inputs)

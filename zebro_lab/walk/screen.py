@@ -169,7 +169,7 @@ def support_lines(support: Support) -> list[str]:
 
 
 def tilt_lines(summary: WalkSummary) -> list[str]:
-    """Return a warning if the body tilts by over `_STEEP`, which none does on its legs."""
+    """Return a warning if the body tilts by over `_STEEP`, as none does on its legs; else empty."""
     roll, pitch = np.degrees([summary.largest_roll, summary.largest_pitch])
     if max(roll, pitch) <= _STEEP:
         return []
@@ -209,9 +209,9 @@ def summary_lines(summary: WalkSummary) -> list[str]:
 
 
 def slip_lines(walked: Walked, summary: WalkSummary, support: Support) -> list[str]:
-    """Format mean slip speed and sliding, if known, and a warning if 1 % of contacts are untested.
+    """Format mean slip speed and sliding, if known, and a warning on untested contacts.
 
-    Untested are contacts with a load below the least tested one.
+    Untested are contacts with a load below the least tested one; up to 1 % of them give no warning.
 
     Args:
         walked: The walk with its slip law; a law without tested loads is noted as assumed.
@@ -240,7 +240,7 @@ def slip_lines(walked: Walked, summary: WalkSummary, support: Support) -> list[s
 
 
 def work_lines(work: LegWork) -> list[str]:
-    """Say what work the legs' motors do and take back; nothing if the model computes no work."""
+    """Say what work the legs' motors do and take back; empty if the model computes no work."""
     if np.isnan(work.done):
         return []
     return [

@@ -71,7 +71,12 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
 
 
 def _gait(request: WalkRequest, described: RobotFile) -> WalkedLegs:
-    """Return the leg angles of the requested gait, with warnings on their speed."""
+    """Return the leg angles of the requested gait, with warnings on their speed.
+
+    Raises:
+        SettingsError: The duration is missing.
+        ModelError: The gait is impossible.
+    """
     if request.duration is None:
         raise SettingsError("missing: the duration of the walk [s]", key="--duration")
     gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
@@ -168,12 +173,13 @@ class _Walking:
 def _walked(
     walking: _Walking, legs: WalkedLegs, angles: LegReference | InexactLog, *, start: float = 0.0
 ) -> Walked:
-    """Walk, draw a band if that is requested, and write the folder.
+    """Walk; compute band and contacts if they are requested; and write the folder.
 
     Args:
         walking: Options, robot, ground and folder.
         legs: The leg angles, from time zero on.
-        angles: The same, or the log of which draws are made.
+        angles: The same; for a log with encoder counts or noise, the log itself, from which
+            possible angles are drawn for the band.
         start: Time of the first sample in the folder [s].
     """
     request, watcher = walking.request, walking.watcher
@@ -211,7 +217,10 @@ def with_own_robot(request: PredictRequest) -> PredictRequest:
 
 
 def is_walk_folder(log: Path) -> bool:
-    """Return whether leg angles are read from a walk folder: a folder or `path.csv`, no run."""
+    """Return whether leg angles are read from a walk folder.
+
+    That is a folder or a file `path.csv` that is neither a recorded run nor a ROS log.
+    """
     return (log.is_dir() or log.name == PATH_CSV) and not (is_recorded(log) or is_ros_log(log))
 
 

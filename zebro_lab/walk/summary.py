@@ -112,7 +112,10 @@ def circle_of(poses: Array) -> tuple[float, float, float]:
 
 
 def _radius(poses: Array, chord: float, sine: float) -> float:
-    """Return the radius by chord and turn of a stride; NaN if the poses lie on no circle [m]."""
+    """Return the radius [m] by chord [m] and turn of a stride: `sine` is 2 sin(turn / 2).
+
+    Infinite without any turn; NaN if the poses lie on no circle, which is judged for four or more.
+    """
     fitted = fitted_radius(Poses(poses[:, 0], poses[:, 1:3], poses[:, 3]))
     if len(poses) >= 4 and np.isnan(fitted):
         return float("nan")
@@ -153,8 +156,8 @@ class SegmentSummary:
         length: Length of the path over the ground [m].
         turn: Change of heading, positive to the left [rad].
         speed: Mean speed along the circle through the poses between cycles; NaN of a stand [m/s].
-        radius: Mean radius of that circle, positive to the left, infinite without any turn; NaN of
-            a stand [m].
+        radius: Mean radius of that circle [m], positive to the left, infinite without any turn; NaN
+            of a stand, and if the poses between cycles, four or more, lie on no circle.
     """
 
     segment: WalkedSegment

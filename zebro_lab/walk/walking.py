@@ -150,7 +150,7 @@ class Walked:
 
     @property
     def settings(self) -> dict[str, object]:
-        """Model, time step, slip law and ground for a manifest, JSON-serialisable."""
+        """Model, time step, slip law, doubts and ground for a manifest, JSON-serialisable."""
         slip = self.slip
         return {
             "model": self.model,
@@ -247,7 +247,20 @@ def walk_with(
 def _slip_for(
     model: WalkModel, text: str | None, *, kinematic: bool
 ) -> tuple[NamedSlip | None, tuple[str, ...]]:
-    """Parse `--slip` for a model; also return a note if the model does not use it."""
+    """Parse `--slip` for a model; also return notes.
+
+    Args:
+        model: The walking model.
+        text: Value of `--slip`; None if it was not given.
+        kinematic: Whether the thesis's model walks without forces, as for gaits other than tripods.
+
+    Returns:
+        The slip law, None if the model does not use one; a note if `--slip` is given but not used,
+        and one on kinematics.
+
+    Raises:
+        SettingsError: The model needs a slip law, and `--slip` is missing or invalid.
+    """
     slip = None if text is None else parse_slip(text)
     if model.slips and not kinematic:
         if slip is None:

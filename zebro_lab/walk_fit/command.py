@@ -84,7 +84,10 @@ def calibrate(
 
 
 def _document(request: CalibrationRequest, *, with_walks: bool) -> dict[str, object]:
-    """Return the contents of the folder's slip.toml, and of the manifest of `walks/` if fitted."""
+    """Return folder, whether its data are simulated, and the content of its slip.toml.
+
+    With walks, the content of the manifest of its `walks/` is the entry `walks`.
+    """
     slip = read_toml_document(request.out / "slip.toml")
     source = str(slip.get("source", ""))
     content = {"folder": request.out, "simulated": is_simulated(source), "calibration": slip}

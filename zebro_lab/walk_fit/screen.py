@@ -50,7 +50,8 @@ def _parameter_table(posterior: WalkPosterior) -> Table:
 def _cells(each: Contraction, unit: str) -> tuple[str, str, str, str]:
     """Format prior, posterior, unit and informed share of a parameter.
 
-    Logarithms are shown as the factor that they are of, `fall` with its usual value `FALL` added.
+    Values are shown as mean ± sd; logarithms of factors, unit `log`, as exp(mean) ×/÷ exp(sd).
+    `fall` is fitted as a difference from its usual value `FALL`, which is added again.
     """
     share = f"{informed(each.contraction):.0%}"
     if unit == "log":  # of a factor
@@ -66,7 +67,10 @@ def _cells(each: Contraction, unit: str) -> tuple[str, str, str, str]:
 
 
 def _uninformed(posterior: WalkPosterior) -> list[str]:
-    """Return a line that names the parameters whose posterior equals the prior, if any."""
+    """Return a line that names the parameters that the walks do not inform; empty without any.
+
+    Their posterior variance is at least nine tenths of the prior's (`Contraction.informed`).
+    """
     names = [each.name for each in posterior.contractions() if not each.informed]
     if not names:
         return []
@@ -74,7 +78,11 @@ def _uninformed(posterior: WalkPosterior) -> list[str]:
 
 
 def _cases(posterior: WalkPosterior) -> list[str]:
-    """Return a line for each wrongly mounted leg with a probability of `_LIKELY` or more."""
+    """Return a line for each case with a probability of `_LIKELY` or more, likeliest first.
+
+    A case is one wrongly mounted leg, in all walks or in one, with the offset of its angle; or,
+    where `case` is None, that no leg is mounted wrong, which has no offset.
+    """
     lines = []
     for found in posterior.found():
         if found.probability < _LIKELY:
@@ -102,7 +110,10 @@ def _quality(posterior: WalkPosterior) -> list[str]:
 
 
 def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
-    """Return a table of the errors of each left-out walk, beside the best baseline's CRPS."""
+    """Return a table of the errors of each left-out walk, and the smallest CRPS of its baselines.
+
+    The baselines' smallest CRPS is taken of x and of y separately; `-` is a coverage not known.
+    """
     numbers = (
         "error, rms\n[mm]", "of path\n[%]", "yaw\n[deg]", "radius\n[m]", "tracked\n[m]",
         "90 % band holds\nx, y, yaw [%]", "CRPS x, y\n[mm]", "best baseline's\n[mm]",
@@ -124,4 +135,5 @@ def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
 
 
 def _two(values: "np.ndarray | list[float]") -> str:
+    """Format the first two values [m], those of x and y, in millimetres."""
     return " ".join(f"{1000 * value:.1f}" for value in values[:2])

@@ -150,7 +150,12 @@ def _fit(
 
 
 def _slip_of(request: WalksRequest, calibration: Path) -> Path:
-    """Return the `slip.toml` of a finished calibration; raise without it, or without walks."""
+    """Return the path of the `slip.toml` of a finished calibration.
+
+    Raises:
+        SettingsError: The request names no walk.
+        NotFound: The calibration has no `slip.toml`.
+    """
     if not request.walks:
         raise SettingsError("missing: no walk was given to fit", key="--walks")
     slip_toml = recover(calibration) / SLIP_TOML

@@ -72,9 +72,9 @@ class WalkOnFile:
 
 
 def read_walks(folders: Sequence[Path], *, clock: Clock | None = None) -> list[WalkOnFile]:
-    """Read tracked walks of one robot, copies only once; equal folder names get a number.
+    """Read tracked walks of one robot, at least one; equal folder names get a number.
 
-    Excluded runs are left out, with a note.
+    Excluded runs, and copies of other walks, are left out, with a note on the first walk.
 
     Args:
         folders: Folder of each walk, one or more, as for `read_walk_on_file`.
@@ -126,8 +126,9 @@ def read_walk_on_file(folder: Path, *, clock: Clock | None = None) -> WalkOnFile
     Raises:
         NotFound: There is no leg log, or no track.
         SettingsError: The `robot.toml` or a `columns.toml` is invalid.
-        DataError: A file cannot be read, the track has no headings or covariance, too few of its
-            poses lie within the log's time range, or `clock` rejects it.
+        DataError: A file cannot be read, the track has no headings or no positive definite
+            covariance, fewer than `FEWEST_POSES` of its poses lie within the log's time range, or
+            `clock` rejects it.
     """
     log_file = _legs_of(folder)
     track_file = recover(folder / TRACK) / TRACK_CSV
@@ -164,7 +165,9 @@ def _tilt(
 ) -> tuple[MeasuredTilt | None, tuple[Path, ...], tuple[str, ...]]:
     """Read roll and pitch of a run's IMU from `start` to `end` [s], with time zero at `start`.
 
-    Returns them, None without an IMU or with less than 1 s of data; the files they are from; notes.
+    Returns:
+        Roll and pitch, None without an IMU or with less than 1 s of data; the files they were read
+        from; and notes.
     """
     measured = read_recorded_tilt(folder) if is_recorded(folder) else None
     if measured is None:
@@ -179,7 +182,11 @@ def _tilt(
 
 
 def _legs_of(folder: Path) -> Path:
-    """Return what leg angles are read from: the run folder itself, else a file `legs.*` in it."""
+    """Return what leg angles are read from: a recorded run itself, else a file `legs.*` in it.
+
+    Raises:
+        NotFound: There is no such folder, or no leg angles in it.
+    """
     if not folder.is_dir():
         raise NotFound(f"{folder}: no such folder; expected a run with leg angles and a track")
     if is_recorded(folder):

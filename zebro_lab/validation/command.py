@@ -57,7 +57,12 @@ def validate(request: ValidateRequest, output: Output = TEXT) -> None:
 
 
 def _require_runs(request: ValidateRequest) -> None:
-    """Check that options are those of runs, and that there are as many predictions as tracks."""
+    """Check that options are those of runs, and that there are as many predictions as tracks.
+
+    Raises:
+        BadParameter: An option is one of trajectories, the numbers differ, nothing is named, or a
+            clock offset is both given and to be estimated.
+    """
     _require_no_options(request, _ONLY_PAIRS, "belongs to two trajectories; give their files")
     n_predicted, n_tracks = len(request.predicted), len(request.track)
     if n_predicted != n_tracks or not (request.runs or n_predicted):
@@ -70,7 +75,12 @@ def _require_runs(request: ValidateRequest) -> None:
 
 
 def _require_pair(request: ValidateRequest) -> None:
-    """Check that there are two files, and that options are those of trajectories."""
+    """Check that there are two files, and that options are those of trajectories.
+
+    Raises:
+        BadParameter: There are not two files, a folder other than a ROS log is among them, an
+            option is one of runs, or a topic is given without a ROS log.
+    """
     logs = [path for path in request.runs if is_ros_log(path)]
     folders = [path for path in request.runs if path.is_dir() and path not in logs]
     if folders or len(request.runs) != 2:
@@ -85,7 +95,7 @@ def _require_pair(request: ValidateRequest) -> None:
 
 
 def _require_no_options(request: ValidateRequest, names: tuple[str, ...], problem: str) -> None:
-    """Raise for the first of these options that differs from its default."""
+    """Raise `BadParameter` for the first of these options that differs from its default."""
     default = ValidateRequest()
     for name in names:
         given, usual = (

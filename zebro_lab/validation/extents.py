@@ -23,7 +23,8 @@ def unit_warning(
 ) -> tuple[str, ...]:
     """Return a question if the extents of two paths differ by about the factor between two units.
 
-    An extent is the rms distance of the positions from their mean.
+    An extent is the rms distance of the positions from their mean. No question, an empty tuple, is
+    returned if the ratio fits no pair of units or a path stays in one place.
 
     Args:
         reference: Positions, shape (n, d) [m], and their name for the warning.

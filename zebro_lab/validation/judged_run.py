@@ -89,7 +89,7 @@ def judge_run(
 
 
 def _sizes(judgement: Judgement, track: TrackFile) -> tuple[str, ...]:
-    """Return a question if track and prediction extend as if their units differed."""
+    """Return a question if track and prediction extend as if their units differed; else empty."""
     seen = judgement.track
     path = states_at(judgement.rows[0].path.draws(), seen.t)[0, :, :2]
     return unit_warning(
@@ -128,7 +128,7 @@ def _gaps(t: Array) -> Iterator[str]:
 
 
 def _mirrored(track: Poses, path: Poses) -> Iterator[str]:
-    """Yield a warning if the track turns to the other side than the predicted path in its time."""
+    """Yield a warning if the track turns to the other side than the predicted path at its times."""
     if turn_oppositely(path.at(track.t), track):
         yield f"WARNING: {mirrored_hint(track)}"
 

@@ -25,14 +25,15 @@ def pairs_of_runs(paths: Sequence[Path]) -> tuple[list[Pair], tuple[str, ...]]:
     """Return the folders of prediction and track of each run, and what is left out of several.
 
     A single path must be a run with both. If there are several, those that are no such run are left
-    out, each with a note.
+    out, each with a note. Without any path both are empty.
 
     Args:
         paths: Paths, in order.
 
     Raises:
         NotFound: A path does not exist, the only path lacks prediction or track, or all do.
-        DataError: The manifest of a run is invalid.
+        DataError: The manifest of a run is invalid, or a run was imported without leg angles and
+            has no prediction.
     """
     if len(paths) == 1:
         return [pairs_of_run(paths[0])], ()
@@ -53,7 +54,11 @@ def pairs_of_runs(paths: Sequence[Path]) -> tuple[list[Pair], tuple[str, ...]]:
 
 
 def _why_none(path: Path) -> str | None:
-    """Return why a path is certainly no tracked walk; None if it may be one."""
+    """Return why a path is certainly no tracked walk; None if it may be one.
+
+    It may be one if it is a recorded run other than one of the slip rig, or has one of the folders
+    `prediction` and `track`. Raise `NotFound` if it does not exist.
+    """
     if not path.exists():
         raise NotFound(f"{path}: no such file or folder; name run folders")
     if not path.is_dir():
@@ -170,7 +175,10 @@ def read_predicted_walks(
 
 
 def _read(name: str, predicted: Path, tracked: Path, duplicates: tuple[str, ...]) -> PredictedWalk:
-    """Read a walk; its IMU data only if `tracked` is the folder `track` of a run."""
+    """Read a walk; its IMU data only if `tracked` is the folder `track` of a run.
+
+    Photographs that are missing, changed or not stated are only noted, in `not_shown`.
+    """
     run = tracked.parent if tracked.name == TRACK and is_recorded(tracked.parent) else None
     tilt = None if run is None else read_recorded_tilt(run)
     prediction, track = read_prediction(predicted), read_track(tracked)
@@ -193,7 +201,7 @@ def _require_not_exchanged(predicted: Path, tracked: Path) -> None:
 
 
 def _is(path: Path, name: str, *, not_: str) -> bool:
-    """Return whether a path is a file of a name, or a folder with it and without another."""
+    """Return whether a path is a file `name`, or a folder with such a file and without `not_`."""
     if path.is_dir():
         return (path / name).is_file() and not (path / not_).is_file()
     return path.name == name

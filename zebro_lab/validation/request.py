@@ -110,9 +110,9 @@ class ValidateRequest:
 
     @property
     def is_pair(self) -> bool:
-        """Whether trajectories are given: a file is among `runs`, and no run folder.
+        """Whether trajectories are given: a file or ROS log is among `runs`, and no run folder.
 
-        Of `data/*`, with plots beside runs, the runs are meant.
+        A run folder has one of `_OF_RUNS`. Of `data/*`, with plots beside runs, the runs are meant.
         """
         files = any(is_ros_log(path) or path.is_file() for path in self.runs)
         return files and not any((path / name).exists() for path in self.runs for name in _OF_RUNS)
@@ -121,7 +121,10 @@ class ValidateRequest:
 
     @property
     def folder(self) -> Path:
-        """`--out` if given, else by what is validated, see its help."""
+        """`--out` if given; else `trajectories` for a pair, RUN/validation for a single run alone.
+
+        For several runs, or pairs of `--predicted` and `--track`, it is `validation`.
+        """
         if self.out is not None:
             return self.out
         if self.is_pair:

@@ -52,6 +52,7 @@ def _pair(judged: JudgedPair) -> list[str | Table]:
     """Format warnings, a table of the metrics of two trajectories, and notes.
 
     Names of metrics come from `_PAIR`, else from the parts of the column, such as `rpe_1m_m`.
+    Numbers of pairs are left out, as is the scale if it is 1; NaN is an empty cell.
     """
     warnings, notes = warnings_first(judged.notes)
     table = plain_table(judged.title, ("", "unit"), [row.where for row in judged.rows])
@@ -163,7 +164,10 @@ def _verdict(run: JudgedRun) -> list[str]:
 
 
 def _expected(level: float, poses: int) -> str:
-    """Format the range of coverage of independent poses; those of one walk are not quite that."""
+    """Format the central 95 % range of the coverage of independent poses.
+
+    Errors of poses of one walk are correlated, so that their coverage lies outside more often.
+    """
     low, high = coverage_range(level, poses)
     return f" (of {poses} independent poses {low:.0%} to {high:.0%})"
 

@@ -131,7 +131,11 @@ def _errors(
 def _matched(
     reference: Trajectory, estimate: Trajectory, max_difference: float, time_offset: float
 ) -> tuple[RigidPath, RigidPath, str]:
-    """Return the matched poses of the reference and of the estimate, and a note on the others."""
+    """Return the matched poses of the reference and of the estimate, and a note on the others.
+
+    Raises:
+        DataError: As in `judge_pair`.
+    """
     if reference.timed != estimate.timed:
         without = estimate if reference.timed else reference
         raise DataError(

@@ -51,7 +51,7 @@ def compare_runs(
 
 
 def _read(run: Path) -> TrackFile:
-    """Read the track of a run folder; raise if it has no headings."""
+    """Read the track of a run folder; raise `DataError` if it has no headings."""
     track = read_track(run / TRACK)
     if not track.poses.has_yaw:
         raise DataError("has no headings: track it again with a marker or both prints", file=run)

@@ -43,7 +43,10 @@ def compared_document(done: Compared) -> dict[str, object]:
 
 
 def _table(done: Compared) -> Table:
-    """Return a table of both medians, their difference and the probability of the second."""
+    """Return a table of medians, their difference, and the probability that the second is larger.
+
+    A star marks differences whose 90 % interval does not hold zero.
+    """
     one, other = done.comparison.names
     title = f"{other} minus {one}: medians, 90 % intervals"
     numbers = (one, other, "difference", "unit", f"P({other} is larger)")

@@ -27,7 +27,11 @@ _SAME = 0.02  # relative difference of a load from the tested range that is take
 
 
 class _Fitted:
-    """The slip curve of a calibration, with `DRAWS` posterior draws of its parameters."""
+    """The slip curve of a calibration, with `DRAWS` posterior draws of its parameters.
+
+    Raises:
+        DataError: The path holds an assumed friction law instead of a calibrated curve.
+    """
 
     def __init__(self, path: Path, rng: np.random.Generator) -> None:
         self.slip = parse_slip(str(path), with_walks=False)
@@ -144,8 +148,9 @@ def compare_slip(
 def _loads(fitted: list[_Fitted], given: GivenCurve | None) -> list[float]:
     """Return the loads at which the curves are compared [N], within the tested loads of all.
 
-    They are the loads of the given curve, else those of the first calibration's test. If none of
-    the latter is in the common range, they are its lowest, middle and highest load.
+    They are the loads of the given curve, else those of the first calibration's test, in the range
+    that all tested, with a margin of `_SAME`. If none of the latter is in this range, they are its
+    lowest, middle and highest load.
 
     Raises:
         DataError: The ranges do not overlap, or no load of the given curve lies in them.
@@ -236,7 +241,10 @@ def _place(forces: Array, curve: Array, loads: list[float], slip: Array, text: s
         curve: Forces of the given curve, shape (loads, slips) [N]; NaN where it is unknown.
         loads: Loads [N].
         slip: Slip ratios, shape (slips,) [-].
-        text: Name of the given curve, for the error if it is unknown at all slip ratios.
+        text: Name of the given curve, for the error.
+
+    Raises:
+        DataError: The given curve is unknown at all slip ratios and loads.
     """
     if not np.isfinite(curve).any():
         raise DataError(

@@ -98,7 +98,11 @@ def compare(
 
 
 def _kind(path: Path) -> str:
-    """Return "curve", "calibration" (it has a `slip.toml`) or "run" (it has a track)."""
+    """Return "curve", "calibration" (it is or has a `slip.toml`) or "run" (it has a track).
+
+    Raises:
+        NotFound: The path is none of these.
+    """
     if is_curve(path):
         return "curve"
     recover(path)

@@ -39,7 +39,8 @@ class Curve:
         load: Normal force of both curves [N].
         bands: Traction [N], shape (2, 3, n): first and second; lower edge, mean and upper edge of
             the band, all the same for a curve without uncertainty.
-        points: Slip ratios [-] and traction forces [N] of block means at this load, shape (2, k).
+        points: Slip ratios [-] and traction forces [N] of block means within 10 % of this load,
+            shape (2, k); k is 0 for two calibrations.
     """
 
     slip: Array
@@ -55,7 +56,7 @@ class Place:
     Attributes:
         inside: Whether it lies inside at all tested slips and loads.
         share_outside: Share of the tested slips and loads at which it lies outside [-].
-        slip: Slip ratio at which it is farthest, in half widths of the band [-].
+        slip: Slip ratio at which the curve is farthest from the mean, counted in half widths [-].
         load_n: Load there [N].
         half_widths: Its distance from the mean there, in half widths of the band [-].
         difference_n: Curve minus mean there [N].

@@ -195,7 +195,7 @@ def _numbers(text: str, key: str) -> list[float]:
 
 
 def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
-    """Raise if a template, click or correction is of a photograph that is not among `names`."""
+    """Raise `SettingsError` if an annotation is of a photograph that is not among `names`."""
     corrected = [each.photo for each in annotations.corrections]
     tops = [top.photo for top in annotations.templates]
     for photo in (*tops, *annotations.clicks, *corrected):
@@ -203,7 +203,10 @@ def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
 
 
 def _require_photo(photo: str, names: Sequence[str]) -> None:
-    """Raise if there is no such photograph; `NAME#NUMBER` is an exposure or frame of NAME."""
+    """Raise `SettingsError` if `photo` is not among `names`.
+
+    `NAME#NUMBER`, an exposure or frame of NAME, is accepted if NAME is among them.
+    """
     # Exposures and frames are known only after tracking: walk.jpg#3 is one of walk.jpg.
     if photo in names or photo.rpartition(_EXPOSURE)[0] in names:
         return

@@ -71,7 +71,7 @@ def read_annotations(file: Path) -> Annotations:
 
 
 def _templates(table: SettingsTable) -> tuple[MarkedTop, ...]:
-    """Read `[template]`, or several `[[template]]`; raise if two are of one photograph."""
+    """Read `[template]` or `[[template]]` tables; `SettingsError` if two are of one photograph."""
     if "template" not in table:
         return ()
     found = table.value("template", [])
@@ -113,6 +113,7 @@ def _template(table: SettingsTable) -> MarkedTop:
 
 
 def _pixel(table: SettingsTable, key: str) -> Click:
+    """Read a pixel: a list of its column u and row v [px]."""
     u, v = table.quantities(key, 2, "dimensionless")
     return u, v
 

@@ -52,7 +52,14 @@ def read_camera_file(file: Path) -> Camera:
 
 
 def _covariance(fit: SettingsTable) -> Array:
-    """Read the lens's covariance, shape (9, 9), from standard deviations and correlations."""
+    """Read the lens's covariance, shape (9, 9), from standard deviations and correlations.
+
+    What the file does not state is 0. The order is fx, fy, cx, cy [px], k1, k2, p1, p2, k3 [-].
+
+    Raises:
+        SettingsError: A standard deviation is negative, or the correlations are impossible: not
+            from -1 to 1, or with an eigenvalue below `-_ROUNDED`.
+    """
     sd: list[float] = []
     for key, count in _SDS:
         values = fit.quantities(key, count, "dimensionless") if key in fit else count * (0.0,)

@@ -163,7 +163,7 @@ def _poses(table: RawTable, file: Path) -> Poses:
 
 
 def _present(table: RawTable, names: Sequence[str]) -> str:
-    """Return the first of two accepted column names that the table has; raise if it has neither."""
+    """Return the first of two accepted names that the table has; `DataError` without either."""
     for name in names:
         if name in table.columns:
             return name
@@ -172,14 +172,22 @@ def _present(table: RawTable, names: Sequence[str]) -> str:
 
 
 def _numbers(table: RawTable, name: str, si_unit: str) -> Array:
-    """Return a column in SI, from the unit that the file states for it, if it states one."""
+    """Return a column in SI, from the unit that the file states for it, if it states one.
+
+    Raises:
+        DataError: A cell is not a finite number.
+    """
     values = MappedColumn(name, si_unit).in_unit_of(table, si_unit).in_si(table)
     table.require_finite(name, values, "a finite number: leave such poses out")
     return values
 
 
 def _covariance(table: RawTable) -> Array:
-    """Read the covariance of x, y and yaw of each pose, shape (n, 3, 3); check its eigenvalues."""
+    """Read the covariance of x, y and yaw of each pose, shape (n, 3, 3).
+
+    Raises:
+        DataError: An eigenvalue is negative, below -1e-9, which is more than rounding.
+    """
     upper = np.column_stack([_numbers(table, *each) for each in COVARIANCE.items()])
     covariance = np.empty((len(upper), 3, 3))
     for k, (i, j) in enumerate(zip(*np.triu_indices(3), strict=True)):

@@ -28,7 +28,8 @@ def read_floor_file(file: Path) -> FloorMap:
     Raises:
         NotFound: The file does not exist.
         SettingsError: The file is not TOML, has no marker and no point, or holds an unknown key or
-            an impossible value.
+            an impossible value. Fewer than four points without a marker, from which no camera's
+                pose can be computed, raise only when a photograph is located.
     """
     table = read_settings(file, advice="`zebro-lab camera kit` starts one")
     if "focal" in table:
@@ -53,7 +54,7 @@ def read_floor_file(file: Path) -> FloorMap:
 
 
 def _common(table: SettingsTable) -> dict[str, float]:
-    """Read the defaults of marks: standard deviations and, if given, the side of markers [m]."""
+    """Read the defaults of marks: standard deviations [m, deg] and, if given, the side [m]."""
     stated = {
         key: table.quantity(key, unit, above=0.0) for key, unit in _COMMON.items() if key in table
     }
@@ -64,6 +65,10 @@ def _marker(markers: SettingsTable, number: str, common: Mapping[str, float]) ->
     """Read the marker with this number; what its table leaves out comes from `common`.
 
     The side must be given in one of the two. Angles are in degrees in the file.
+
+    Raises:
+        SettingsError: `number` is not one of up to `_MOST_DIGITS` digits, or a value is missing or
+            invalid.
     """
     if not number.isdecimal() or len(number) > _MOST_DIGITS:
         raise markers.fault("is not a marker's number; expected up to 6 digits, as in 10", number)
@@ -138,4 +143,5 @@ def _point_line(point: FloorPoint) -> Mapping[str, float]:
 
 
 def _line(**values: float) -> Mapping[str, float]:
+    """Return an inline TOML table of values, rounded to 7 decimals."""
     return inline_table({key: round(float(value), 7) for key, value in values.items()})

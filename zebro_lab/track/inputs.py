@@ -110,6 +110,7 @@ def _standing_height(described: RobotFile) -> float:
 
 
 def _file(described: RobotFile) -> str:
+    """Return the path of the `robot.toml` for an error; without one, that no robot is named."""
     return str(described.file or "the thesis's robot (choose another with --robot)")
 
 
@@ -139,7 +140,11 @@ class TrackInputs:
         return replace(self.scene, camera=camera, is_composite=sequence.is_composite)
 
     def source_of(self, sequence: PhotoSequence) -> str:
-        """Return the photographs' source: the option, else the files', the run's or "unknown"."""
+        """Return the photographs' source: "real", "sim:WHAT" for simulated ones, or "unknown".
+
+        It is the value of `--source` if given; else "sim:photographs" if a file's EXIF data say
+        that it is simulated; else the source in the run's manifest; without a run "unknown".
+        """
         if self.request.source is not None:
             return self.request.source
         if sequence.source is not None or self.manifest is None:
@@ -210,7 +215,10 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
 
 
 def lens_note(inputs: TrackInputs) -> tuple[str, ...]:
-    """Return a warning if the lens is taken as exact, as its file states no standard deviations."""
+    """Return a warning if the lens is taken as exact: its file states no standard deviations.
+
+    Else an empty tuple.
+    """
     if inputs.scene.camera.covariance.any():
         return ()
     return (

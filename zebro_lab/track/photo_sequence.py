@@ -228,7 +228,7 @@ def _require_as_exif(paths: Sequence[Path], times: PhotoTimes, request: TimeRequ
     """Raise `SettingsError` if given and EXIF times differ in order of magnitude.
 
     Their median intervals may differ by a factor of up to `MOST_APART`. Nothing is checked unless
-    all photographs, two or more, have EXIF times.
+    all photographs, two or more, have EXIF times, whose median interval is above 0.
     """
     taken = [exif_time(path) for path in paths]
     t = np.sort([each[0] for each in taken if each is not None])
@@ -311,7 +311,7 @@ def _of_video(
 
 
 def _require_meant_for(request: TimeRequest, *, is_video: bool) -> None:
-    """Raise if a time option is given that has no effect on photographs, or on a video."""
+    """Raise `SettingsError` for a time option that has no effect on photographs, or on a video."""
     if not is_video:
         given, reason = {"--every": request.every}, "photographs, which are all taken"
     else:

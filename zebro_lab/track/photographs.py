@@ -129,7 +129,11 @@ def photos_of_track(track: Path) -> TrackedPhotos:
 
 
 def _poses_of(file: Path) -> tuple[Array, tuple[str, ...]]:
-    """Read time [s] and name of the photograph of each pose of a track, n each."""
+    """Read time [s] and name of the photograph of each pose of a track, n each.
+
+    Raises:
+        DataError: The table has no column `photo`, as that of an imported track.
+    """
     table = read_table_file(file)
     if "photo" not in table.columns:
         raise DataError("has no column photo; a track that was imported has none", file=file)
@@ -155,7 +159,12 @@ def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:
 
 
 def _camera(inputs: Mapping[Path, str], folder: Path) -> Camera:
-    """Read the track's lens from its inputs: the first TOML file that is a `camera.toml`."""
+    """Read the track's lens from its inputs: the first TOML file that is a `camera.toml`.
+
+    Raises:
+        DataError: This file has changed since the track was made.
+        NotFound: No such file is where it was.
+    """
     for path, digest in inputs.items():
         if path.suffix == ".toml" and path.is_file():
             try:

@@ -20,7 +20,11 @@ VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
 
 
 def _moment(text: str) -> datetime:
-    """Parse --start; the time, which has no zone on a camera's clock, is labelled UTC."""
+    """Parse --start; the time, which has no zone on a camera's clock, is labelled UTC.
+
+    Raises:
+        BadParameter: The text is no ISO 8601 time, or has a time zone other than UTC.
+    """
     try:
         moment = datetime.fromisoformat(text)
     except ValueError as error:
@@ -189,7 +193,10 @@ class TrackRequest:
 
     @property
     def stated_mean_height_sd(self) -> float:
-        """Standard deviation of the mean height of the body's centre over the walk [m]."""
+        """Standard deviation of the mean height of the body's centre over the walk [m].
+
+        As stated, else `bounce_sd`.
+        """
         if self.mean_height_sd is None:
             return self.bounce_sd
         return _length(self.mean_height_sd, "--mean-height-sd")

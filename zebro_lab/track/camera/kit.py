@@ -221,7 +221,7 @@ def _marker_page(
 
 
 def _board_page(size: tuple[float, float], board: Board) -> KitPage:
-    """Lay out the page of the calibration board; raise if it does not fit on the paper."""
+    """Lay out the page of the calibration board; `SettingsError` if it does not fit on paper."""
     width, height = size
     columns, rows = squares_of(board)
     across, up = 1e3 * board.square * columns, 1e3 * board.square * rows

@@ -44,6 +44,7 @@ def draw_page(page: KitPage) -> Figure:
             Patch((black.x, black.y), black.width, black.height, color="black", lw=0, snap=False)
         )
     for text in page.texts:
+        # Of one width for each letter where several blanks align a line, as in a sketch.
         axes.text(
             text.x, text.y, text.text, fontsize=text.size, family="DejaVu Sans Mono"
             if "   " in text.text else "DejaVu Sans", ha="center" if text.centred else "left",

@@ -94,7 +94,10 @@ def parse_board(text: str) -> Board:
 
 
 def _board_grid(text: str, part: str) -> tuple[int, int]:
-    """Parse COLUMNSxROWS, two or more each; `text` is the whole board, for the error."""
+    """Parse COLUMNSxROWS, two or more each; raise `SettingsError` for anything else.
+
+    `text` is the whole text of the board, for the error.
+    """
     columns, _, rows = part.partition("x")
     if not (columns.isdigit() and rows.isdigit() and int(columns) > 1 and int(rows) > 1):
         raise _board_error(text, f"'{part}' is not COLUMNSxROWS, 2 or more each")
@@ -243,7 +246,7 @@ def write_kit(out: Path, *, paper: str = "a4", board: str = "kit") -> tuple[Path
 
 
 def _require_same(file: Path, content: bytes) -> None:
-    """Raise if the file exists with other content than that to be written."""
+    """Raise `AlreadyExists` if the file exists with other content than that to be written."""
     if os.path.lexists(file) and (not file.is_file() or file.read_bytes() != content):
         raise AlreadyExists(f"{file} exists with other content; choose another folder with --out")
 

@@ -157,7 +157,7 @@ def read_trajectory(
 
 
 def _rotation(columns: Mapping[str, Array]) -> Array | None:
-    """Return rotations by the quaternion, else by the heading; None without either."""
+    """Return rotations, shape (n, 3, 3), by quaternion, else by heading; None without either."""
     if set(QUATERNION) <= set(columns):
         return rotations_of_quaternions(np.column_stack([columns[name] for name in QUATERNION]))
     if "yaw_rad" not in columns:
@@ -168,7 +168,13 @@ def _rotation(columns: Mapping[str, Array]) -> Array | None:
 
 
 def _with_times(table: RawTable, file: Path) -> RawTable:
-    """Return a table of poses with the times of another file, one a line [s]."""
+    """Return a table of poses with the times of another file, one a line [s].
+
+    Raises:
+        SettingsError: The file has several numbers in a line, or not as many lines as there are
+            poses.
+        DataError: A time is no finite number, or times do not increase.
+    """
     times = read_table_file(file, bare=True)
     if len(times.columns) != 1:
         raise SettingsError(f"{file} is not a file of one number a line", key="--times")

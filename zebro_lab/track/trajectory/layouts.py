@@ -83,7 +83,7 @@ def read_pose_table(
 
 
 def _numbers(count: int) -> list[str]:
-    """Return the headers of columns without a header."""
+    """Return the headers given to columns without any: "1", "2" and so on up to `count`."""
     return [str(i + 1) for i in range(count)]
 
 
@@ -96,8 +96,7 @@ def _layout_of_count(table: RawTable, plane: str) -> Layout | None:
 
     Raises:
         DataError: There are 8, but the body is upright only if w is the first number of the
-            quaternion,
-            not the last as in TUM files.
+            quaternion, not the last as in TUM files.
     """
     if len(table.columns) == len(COLUMNS[Layout.KITTI]):
         return Layout.KITTI
@@ -116,7 +115,11 @@ def _layout_of_count(table: RawTable, plane: str) -> Layout | None:
 
 
 def _of_matrices(table: RawTable) -> RawTable:
-    """Convert rotation matrices to quaternions; times are numbers of rows."""
+    """Convert rotation matrices to quaternions; times are numbers of rows.
+
+    Raises:
+        DataError: A matrix is no rotation, within `_ROTATION_TOLERANCE`.
+    """
     rotation = np.column_stack([table.numbers(name) for name in _ROTATION]).reshape(-1, 3, 3)
     with np.errstate(invalid="ignore", over="ignore"):
         product = np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)

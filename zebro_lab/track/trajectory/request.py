@@ -81,6 +81,8 @@ T = TypeVar("T")
 def of_file(given: Sequence[T], which: int) -> T | None:
     """Return the value of a repeatable option for a file; the last holds for those after it.
 
+    None if the option was not given.
+
     Args:
         given: The values given.
         which: 0 for the first file of a command, 1 for the second.

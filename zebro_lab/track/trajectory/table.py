@@ -120,7 +120,10 @@ def read_table_columns(
 
 
 def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, list[str]]:
-    """Return the rows that `[rows] keep` asks for and that hold a pose, and a note on the rest."""
+    """Return the rows that `[rows] keep` asks for and that hold a pose, and a note on empty ones.
+
+    A row without any number of a pose is empty; nothing is left out if all are.
+    """
     if mapping.keep:
         table = table.part(kept_rows(table, mapping.keep, where=mapping.where))
     headers = [mapping.mapped[name].name for name in POSE_UNITS if name != "t_s"]
@@ -136,6 +139,8 @@ def _with_poses(table: RawTable, mapping: Columns) -> tuple[RawTable, list[str]]
 
 def _in_seconds(table: RawTable, mapping: Columns, columns: dict[str, Array]) -> list[str]:
     """Convert stamps whose unit nobody states to seconds if they are times since 1970; note it.
+
+    They are if they are dates from 1990 to 2102 in ms, us or ns; `columns["t_s"]` is replaced.
 
     Raises:
         DataError: Poses are hours, or less than a microsecond, apart, so that the unit must be

@@ -27,7 +27,8 @@ def parse_goal(text: str) -> Goal:
     """Parse `X,Y[,DEG]`: a place in metres and perhaps the heading there in degrees.
 
     Raises:
-        BadParameter: The text has another form, or is where the robot stands.
+        BadParameter: The text has another form, or the place is over 100 m away, or is where the
+            robot stands, without another heading.
 
     >>> parse_goal("1,-0.5")
     Goal(x=1.0, y=-0.5, heading=None)

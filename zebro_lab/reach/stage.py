@@ -105,7 +105,7 @@ def reach(request: ReachRequest, watcher: Watcher) -> ReachResult:
 
 
 def _walking(request: ReachRequest, model: ModelRequest, watcher: Watcher) -> _Walking:
-    """Read the files of a request, and measure a stride."""
+    """Read the files of a request, and measure a stride; `SettingsError` without a slip law."""
     if request.slip is None:
         raise SettingsError("missing: legs slip; name a slip law", key="--slip")
     described, ground = robot_of(model), ground_of(model)
@@ -145,7 +145,12 @@ def stepping_of(request: SteppingRequest, leg_arc: float) -> Stepping:
 def _planned(
     goals: Sequence[Goal], walking: _Walking, watcher: Watcher
 ) -> list[tuple[int, str, Fitted]]:
-    """Plan both ways to each goal; raise `SettingsError` for one where the robot is already."""
+    """Plan both ways to each goal: number of the goal from 1, name of the manoeuvre, plan.
+
+    Raises:
+        SettingsError: The robot is at a goal already.
+        WalkStopped: A stop was requested.
+    """
     planners = {STOP_TURN_WALK: stop_turn_walk, CURVE: curve}
     found = []
     for number, goal in enumerate(goals, start=1):

@@ -124,7 +124,11 @@ def named(goal: Goal) -> str:
 
 
 def compared(turning: Way, curving: Way) -> str:
-    """Say in one sentence which of two ways to a goal is faster, and which takes less work."""
+    """Say in one sentence which of two ways to a goal is faster, and which takes less work.
+
+    Times that differ by up to `_EQUAL_TIME` are equal, as is work that differs by up to the share
+    `_EQUAL_WORK` of the larger.
+    """
     where = f"goal {turning.number} ({named(turning.goal)})"
     times, work = (turning.time, curving.time), (turning.work.done, curving.work.done)
     faster = _less(*times, "s", equal=_EQUAL_TIME)
@@ -142,7 +146,7 @@ def compared(turning: Way, curving: Way) -> str:
 
 
 def _less(turning: float, curving: float, unit: str, *, equal: float) -> tuple[str, str] | None:
-    """Return the way with the smaller number, and by how much; None if they differ by `equal`."""
+    """Return the way with the smaller number, and by how much; None if by `equal` or less."""
     less = abs(turning - curving)
     if less <= equal:
         return None

@@ -102,7 +102,10 @@ def _not_from(what: str, result: ReportPart, files: Mapping[str, str | None]) ->
 
 
 def _predicted(run: ReportedRun, prediction: ReportPart) -> Iterator[str]:
-    """Say which of a run's files with leg angles a prediction was not made from."""
+    """Say which of a run's files with leg angles a prediction was not made from.
+
+    Nothing is said if it was made from the table that the run was imported from.
+    """
     imported = _mapping(run.recorded.get("inputs"))
     tables = {str(digest) for name, digest in imported.items() if Path(name).suffix != ".toml"}
     if not tables & _read(prediction):  # else made from the table that the run was imported from
@@ -145,7 +148,11 @@ def _changed(sources: Sources) -> Iterator[str]:
 
 
 def _leg_files(run: ReportedRun) -> Mapping[str, str]:
-    """Return the hashes of the files that hold a run's leg angles, by name, as far as known."""
+    """Return the hashes of the files that hold a run's leg angles: its log and the robot's profile.
+
+    They are by name; that of the log is the one stated in `run.json`, else that of the file now. A
+    file that is missing is left out.
+    """
     log, profile = run.folder / LOG_FILE, profile_file(run.folder, LEGS)
     stated = run.recorded.get("log_sha256")
     found = {} if not isinstance(stated, str) else {LOG_FILE: stated}
@@ -158,7 +165,7 @@ def _present(run: ReportedRun, name: str) -> bool:
 
 
 def _named_slip(prediction: ReportPart) -> str:
-    """Return the name of the slip law that a prediction was made with, as in its manifest."""
+    """Return "slip 'NAME'" by a prediction's manifest; "no slip law" if it names none."""
     slip = _mapping(_mapping(prediction.manifest.get("settings")).get("slip"))
     return f"slip '{slip['named']}'" if "named" in slip else "no slip law"
 
@@ -169,7 +176,10 @@ def _takes_walks(prediction: ReportPart) -> bool:
 
 
 def _now(part: ReportPart, name: str) -> str | None:
-    """Return the hash of a result's file as it is now; else as the manifest states; else None."""
+    """Return the hash of a result's file as it is now; without the file as its manifest states.
+
+    None if neither is known, or the result is missing.
+    """
     if lies_in(part.folder, name) and (part.folder / name).is_file():
         return file_hash(part.folder / name)
     stated = _mapping(part.manifest.get("outputs")).get(name)

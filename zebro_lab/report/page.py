@@ -31,7 +31,9 @@ ABSENT = Markup("–")
 
 
 def look_up(document: Mapping[str, Any], keys: tuple[str | int, ...]) -> Any:
-    """Return the value at a key path of a nested document, or None if a key is missing.
+    """Return the value at a key path of a nested document; None if a key is missing.
+
+    It is missing too below a value that is neither mapping nor list.
 
     Args:
         document: Nested mappings and lists.
@@ -248,7 +250,17 @@ def _policy(style: str) -> str:
 
 
 def _number(part: ReportPart, file: str, *keys: str | int, **spelling: Any) -> str:
-    """Format a number of a document of a part, as `number` does."""
+    """Format a number of a result as `number` does, for the templates; a dash if it is missing.
+
+    Args:
+        part: The result, which is not missing.
+        file: Name of one of its documents, such as `manifest.json`.
+        keys: Key path of the number in that document.
+        spelling: Arguments `scale`, `digits` and `rule` of `number`.
+
+    Raises:
+        KeyError: The part has no such document; `render_report` converts it into a `DataError`.
+    """
     return number(part.documents[file], *keys, file=f"{part.folder}/{file}", **spelling)
 
 
@@ -258,7 +270,7 @@ def _breakable(path: object) -> Markup:
 
 
 def _count(run: ReportedRun, topic: str) -> str:
-    """Format the number of messages that a run recorded on a topic."""
+    """Format the number of messages that a run recorded on a topic; a dash if it has none."""
     return number(run.recorded, "streams", topic, file=f"{run.folder}/{MANIFEST_FILE}")
 
 
@@ -269,7 +281,11 @@ def _pictures(part: ReportPart) -> list[Picture]:
 
 
 def _coverage_out_of_range(part: ReportPart, name: str) -> list[OutOfRange]:
-    """Return the coverages of the prediction of walk `name` that are out of range."""
+    """Return the coverages of the prediction of walk `name` that `out_of_range` yields, maybe none.
+
+    Raises:
+        KeyError: The manifest has no such walk; `render_report` converts it into a `DataError`.
+    """
     return list(out_of_range(part.manifest["runs"][name]["prediction"]))
 
 

@@ -102,7 +102,10 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
 
 
 def _svg(data: bytes, file: Path) -> bytes:
-    """Return an SVG as it is; within an `img` element browsers run no script in it."""
+    """Return an SVG as it is; `DataError` if it has no `<svg` in its first 4096 bytes.
+
+    Within an `img` element browsers run no script in it.
+    """
     if b"<svg" not in data[:4096]:
         raise DataError(f"is not an SVG; {_AGAIN}", file=file)
     return data
@@ -111,7 +114,13 @@ def _svg(data: bytes, file: Path) -> bytes:
 def _webp(data: bytes, file: Path) -> tuple[str, bytes]:
     """Convert a PNG to WebP: exactly where that is small, as for lines, else at high quality.
 
-    A picture with a side too long for WebP is returned as it is.
+    A picture with a side too long for WebP is returned as it is. Transparency becomes white.
+
+    Returns:
+        Kind, "webp" or "png", and content.
+
+    Raises:
+        DataError: The file is no PNG, is damaged, or has too many pixels.
     """
     if not data.startswith(_PNG):
         raise DataError(f"is not a PNG; {_AGAIN}", file=file)

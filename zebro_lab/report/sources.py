@@ -208,7 +208,8 @@ def _part(name: str, folder: Path, data: Path) -> ReportPart:
     """Read a result folder; without a manifest return it as missing, with the command to make it.
 
     Raises:
-        DataError: The manifest is of another command, or lists its outputs in another form.
+        DataError: The manifest is damaged, of another command, or lists its outputs in another
+            form; or a file of `BESIDE` is missing or damaged.
     """
     recover(folder)
     maker = MAKERS[name].format(run=data, data=data, folder=folder)
@@ -235,7 +236,7 @@ def _part(name: str, folder: Path, data: Path) -> ReportPart:
 
 
 def _rows(file: Path) -> dict[str, dict[str, Any]]:
-    """Read a CSV as dicts by header, by the cell in the first column."""
+    """Read a CSV: for each row, by its first cell, a dict of the other cells by header."""
     text = read_text(file, most=_MOST_TABLE)
     with parsing(file, "cannot be read as CSV", advice=_AGAIN):
         return pd.read_csv(io.StringIO(text), index_col=0).to_dict("index")

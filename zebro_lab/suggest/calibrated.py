@@ -43,7 +43,7 @@ def read_calibrated(path: Path) -> Calibrated:
 
     Raises:
         SettingsError: It is of other slip than the rig's.
-        DataError: It is damaged, or of a version that kept too little.
+        DataError: It is missing or damaged, or of a version that kept too little.
     """
     slip = read_slip_file(path)
     folder, law = slip.file.parent, slip.curve.law
@@ -68,7 +68,10 @@ def read_calibrated(path: Path) -> Calibrated:
 def _stated_in(
     settings: Mapping[str, Any], law: SlipLaw, folder: Path
 ) -> tuple[dict[str, Prior], tuple[str, ...]]:
-    """Return the priors that a calibration was told, and a note on those that are left out."""
+    """Return the priors stated to a calibration with `--prior`, by name; and notes.
+
+    The prior of `--prior-from`, the posterior of another calibration, is left out, with a note.
+    """
     told = settings.get("priors") or {}
     file = folder / MANIFEST
     texts = [str(text) for text in told.get("stated", {}).values()]
@@ -83,7 +86,13 @@ def _stated_in(
 def _known(
     of: type[Any], settings: Mapping[str, Any], key: str, folder: Path, default: Any = None
 ) -> Any:
-    """Return prior knowledge that a manifest holds, as an instance of the dataclass `of`."""
+    """Return prior knowledge that a manifest holds, as an instance of the dataclass `of`.
+
+    `default` is returned if the manifest has no such key.
+
+    Raises:
+        DataError: The key is missing and there is no default, or its value is invalid.
+    """
     found = settings.get(key, default)
     if found is None:
         raise DataError(f"has no settings.{key}; calibrate again", file=folder / MANIFEST)

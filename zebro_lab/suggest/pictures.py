@@ -69,7 +69,10 @@ def _targets(suggested: Suggested) -> str:
 def _draw_load(
     axes: Axes, suggested: Suggested, load: float, slip: Array, *, beyond: float = -1.0
 ) -> None:
-    """Draw curve, bands and slips at a load; numbers of points at slips larger than `beyond`."""
+    """Draw curve, bands and suggested slips at a load.
+
+    The number of points, where it is above 1, is written at slips of a size above `beyond`.
+    """
     knowledge, proposal = suggested.knowledge, suggested.proposal
     force, rows = force_rows(
         knowledge.posterior, knowledge.draws, slip=slip, load=np.full(len(slip), load)

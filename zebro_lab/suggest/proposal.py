@@ -233,7 +233,10 @@ def most_slips(plan: Plan, seconds: float, *, least: int) -> int | None:
 
 
 def shortest(plan: Plan, tried: Sequence[float], count: int) -> float:
-    """Return the time of the shortest plan with a number of slips [s]."""
+    """Return the time of the shortest plan with a number of slips [s].
+
+    It has the smallest and largest load alone, the shortest duration tried, and one pass.
+    """
     loads = load_choices(plan.points.loads)[-1]
     points = replace(
         plan.points, loads=loads, duration=min(tried), repeats=1, slips=(0.0,) * count,

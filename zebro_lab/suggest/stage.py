@@ -113,7 +113,7 @@ def require_points(file: Path, plan: Plan) -> None:
 
 
 def _draws(file: Path, posterior: SlipPosterior, *, seed: int) -> Array:
-    """Read draws of a calibration in random order, as coordinates, shape (w, d).
+    """Read draws of a calibration in random order, at most `READ_DRAWS`, as coordinates (w, d).
 
     Raises:
         DataError: The draws are missing, or those of another law.
@@ -135,7 +135,11 @@ def _draws(file: Path, posterior: SlipPosterior, *, seed: int) -> Array:
 
 
 def _rate(profile: RigProfile) -> float:
-    """Return the sample rate of a rig's forces [Hz]."""
+    """Return the sample rate of a rig's forces [Hz]: of its load cell, else of its board.
+
+    Raises:
+        SettingsError: The profile has neither.
+    """
     cell = profile.load_cell
     if cell is not None:
         return cell.rate
@@ -149,7 +153,21 @@ def _rate(profile: RigProfile) -> float:
 def _target(
     text: str, asked: TargetText, plan: Plan, knowledge: Knowledge, z: Array
 ) -> tuple[Target, tuple[Path, ...]]:
-    """Return a target around the draws of a calibration, and the files that were read for it."""
+    """Return a target around the draws of a calibration, and the files that were read for it.
+
+    Args:
+        text: The target as written, its name.
+        asked: The target, parsed; a force without a load is asked for at all loads of the plan.
+        plan: The plan.
+        knowledge: Posterior and draws around which the target is linear.
+        z: Draws of the coordinates, shape (w, d); of a walk's end pose those are walked that are
+            finite.
+
+    Raises:
+        SettingsError: The law has no parameter of this name.
+        ZebroLabError: A walk cannot be read.
+        ModelError: A walk diverged, or too few draws can be walked.
+    """
     posterior, draws = knowledge.posterior, knowledge.draws
     if isinstance(asked, ParameterText):
         _require_parameter(asked.name, posterior)

@@ -214,6 +214,7 @@ class ExperimentFolder:
             self._require_working()
 
     def _point(self, start: RunStart, *, accepted: bool) -> dict[str, Any]:
+        """Return the entry `point` of a run's manifest; see `point_record`."""
         return point_record(
             self._plan, number=start.point.number, attempt=start.attempt, accepted=accepted
         )
@@ -234,7 +235,10 @@ class ExperimentFolder:
                 manifest = replace(manifest, label=label)
 
     def _close_now(self, verdict: PointVerdict | None, reason: str) -> None:
-        """Write the verdict with the end record, and the journal's entry of the point."""
+        """Write the verdict with the end record, and the journal's entry of the point.
+
+        A point whose recorder failed is not accepted. Nothing is written if no run is open.
+        """
         recorder, self._recorder = self._recorder, None
         if recorder is None or self._start is None:
             return

@@ -134,7 +134,11 @@ def _run_rng(seed: int, run: str) -> np.random.Generator:
 def _fast_bench(
     profile: RigProfile, rig: SimulatedRig, rng: np.random.Generator, clock: ManualClock
 ) -> Bench:
-    """Return the bench of a simulated board whose time is that of `clock`, read from memory."""
+    """Return the bench of a simulated board whose time is that of `clock`, read from memory.
+
+    Raises:
+        SettingsError: The profile has no board.
+    """
     if profile.board is None:
         raise SettingsError(
             f"the simulated '{profile.name}' runs in real time only; use {TWIN_PROFILE}@sim",

@@ -110,9 +110,9 @@ def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
 
 
 def _lost_log(run: Path, manifest: RunManifest) -> str | None:
-    """Return that a run's log is missing or not the one of the checksum in the manifest, else None.
+    """Return a sentence if a run's log is missing or differs from the checksum in its manifest.
 
-    Without a checksum in the manifest, any file counts as intact.
+    None if it is intact; without a checksum in the manifest, any file counts as intact.
     """
     log = run / LOG_FILE
     if not log.is_file():  # nor is a FIFO one, which would be waited for

@@ -29,7 +29,7 @@ Seed: TypeAlias = Annotated[
 
 
 def _masses(text: str) -> tuple[float, ...]:
-    """Parse --masses: numbers above 0, separated by commas [kg]."""
+    """Parse --masses: numbers above 0, separated by commas [kg]; else raise `BadParameter`."""
     try:
         masses = tuple(float(mass) for mass in text.split(","))
     except ValueError:

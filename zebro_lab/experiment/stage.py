@@ -170,9 +170,13 @@ def _require_same_source(data: Path, source: str) -> None:
 
 @contextmanager
 def _owned(data: Path) -> Iterator[None]:
-    """Create and lock the experiment's folder.
+    """Create and lock the experiment's folder while the body runs.
 
     The lock file is removed after a ZebroLabError that came before a journal was written.
+
+    Raises:
+        InUse: Another program has locked it.
+        RecordingError: The folder or the lock file cannot be written.
     """
     try:
         data.mkdir(parents=True, exist_ok=True)

@@ -124,7 +124,7 @@ def _heights(
 
 
 def _in_metres(spec: SettingsTable, file: Path) -> Array:
-    """Read heights [m]; without a stated unit raise if they differ by more than `MOST_RELIEF`.
+    """Read heights [m]; `DataError` if they differ by over `MOST_RELIEF` without a stated unit.
 
     The rows of the result are those of the file, the farthest first.
     """
@@ -205,7 +205,7 @@ def _text(file: Path) -> str:
 
 
 def _number(text: str) -> float:
-    """Parse a number; NaN if the text is none."""
+    """Parse a number; NaN if the text is not a number."""
     try:
         return float(text)
     except ValueError:

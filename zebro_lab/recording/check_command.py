@@ -65,7 +65,10 @@ def _require_answers() -> None:
 
 
 def _in_numbers(checked: "Checked") -> dict[str, object]:
-    """Return the result of a check for `--json`; keys end in the unit."""
+    """Return the result of a check for `--json`; keys end in the unit.
+
+    `lift_off` is None if no touchdown angle was given.
+    """
     profile, found = checked.profile, checked.lift_off
     lift_off = found and {
         "angle_rad": found.theta, "height_difference_m": found.mismatch

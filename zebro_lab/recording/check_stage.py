@@ -115,6 +115,10 @@ def _lift_off(
     """Find the lift-off angle: turn all legs to each angle tried, and ask for the hip's height."""
 
     def height(theta: float) -> float:
+        """Turn all legs to an angle [rad] within `MOVING`; return the hip's height by a person [m].
+
+        Samples are read meanwhile, so that they do not pile up in the driver.
+        """
         robot.set_points(encode_counts(profile, [theta] * len(profile.legs)), MOVING)
         end = clock.now() + MOVING
         while clock.now() < end:

@@ -49,7 +49,10 @@ def record(request: RecordRequest, output: Output = TEXT) -> None:
 
 
 def _print_document(recorded: "Recorded", output: Output, code: int) -> None:
-    """Print the contents of the run's `run.json`; who reads them is waited for, by then."""
+    """Print the contents of the run's `run.json` for `--json`; else nothing.
+
+    A slow reader of the output may block this: the run has ended by then.
+    """
     if output.as_json:
         run = json.loads(manifest_text(recorded.manifest))
         simulated = is_simulated(recorded.manifest.source)

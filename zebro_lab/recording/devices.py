@@ -143,7 +143,7 @@ def profile_text(name: str) -> str:
 
 
 def _require_any(request: DevicesRequest) -> None:
-    """Raise unless a device is requested, and a robot if a gait is to be played."""
+    """Raise `SettingsError` without any device, or without a robot if a gait is to be played."""
     if request.zebro is None and request.rig is None and not request.imus:
         raise SettingsError(
             "no device to record is given; add one or more of them", key="--zebro, --imu, --rig"

@@ -58,7 +58,9 @@ def examine(data: Path) -> Iterator[Finding]:
 
 
 def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
-    """Yield BROKEN for each required package that is missing or too old or new, then OK.
+    """Yield BROKEN for each required package that is missing or too old or new, then one `ok`.
+
+    The latter lists the packages that fit, also if others are broken.
 
     Args:
         needed: Requirements in the format of package metadata; those of extras are skipped.
@@ -77,7 +79,10 @@ def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
 
 
 def check_shadows() -> Iterator[Finding]:
-    """Yield BROKEN for each `SHADOWED` module that is no package with a file of its own."""
+    """Yield BROKEN for each `SHADOWED` module whose name finds something else, or nothing.
+
+    The right ones are packages, found by their `__init__.py`.
+    """
     for module, package in SHADOWED.items():
         spec = find_spec(module)
         found = spec and (spec.origin or list(spec.submodule_search_locations or ()))

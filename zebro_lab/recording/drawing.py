@@ -154,7 +154,10 @@ class LiveValues:
         }
 
     def _decode(self, folder: Path, name: str, samples: SampleColumns) -> None:
-        """Decode new samples of a stream and store its values in words, each by its label."""
+        """Decode new samples of a stream and store its values in words, each by its label.
+
+        Samples that cannot be decoded leave the values as they were.
+        """
         try:
             if name not in self._decoders:
                 self._decoders[name] = stream_decoder(name, profile_of(folder, name))

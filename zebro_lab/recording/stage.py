@@ -290,7 +290,10 @@ def _played(path: Path) -> tuple[SampledReference, tuple[str, ...]]:
 
 
 def _duration(request: RecordRequest, play: SampledReference | None) -> float | None:
-    """Return the shorter of requested duration and gait to play [s]; None for no limit."""
+    """Return the shorter of requested duration and gait to play with its lead-in `LEAD_IN` [s].
+
+    None, for no limit, without either. Raise `SettingsError` for a duration that is not positive.
+    """
     wanted = [] if play is None else [LEAD_IN + float(play.t[-1])]
     if request.duration is not None:
         if not request.duration > 0:

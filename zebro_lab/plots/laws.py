@@ -94,7 +94,10 @@ def _median(law: tuple[SlipLaw, Array], slip: Array, load: ArrayLike) -> Array:
 
 
 def _draw_means(axes: Axes, slip: Array, residual: Array) -> None:
-    """Draw means of residuals in bins of equally many blocks, with their standard errors."""
+    """Draw means of residuals in bins of equally many blocks, with their standard errors.
+
+    There is a bin for every three blocks, at most `_BINS`; a single block has an error of 0.
+    """
     if not len(slip):
         return
     parts = np.array_split(np.argsort(slip), min(_BINS, max(1, len(slip) // 3)))

@@ -70,7 +70,11 @@ def _draw_distribution(axes: Axes, whitened: Array) -> None:
 
 
 def _draw_autocorrelation(axes: Axes, whitened: Array, run: NDArray[np.intp]) -> None:
-    """Draw the correlation at each lag with at least `_FEWEST_PAIRS`."""
+    """Draw the autocorrelation of whitened residuals within runs, up to a lag of `_MAX_LAG` blocks.
+
+    Lags with fewer than `_FEWEST_PAIRS` pairs are left out; a note is written if all are. The band
+    holds 95 % of the correlations of white noise.
+    """
     axes.set(xlabel="lag within a run [blocks]", ylabel="autocorrelation [-]")
     rows = [
         (lag, *lag_correlation(whitened, run, lag)) for lag in range(1, min(_MAX_LAG + 1, len(run)))

@@ -90,7 +90,9 @@ def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
 
 
 def _edges(values: Array) -> Array:
-    """Return the edges of 40 bins over the finite values and a tenth of their range on either side.
+    """Return the 41 edges of bins over the finite values and a tenth of their range on either side.
+
+    At least one value must be finite.
 
     If the values are constant, the margin is a twentieth of their size, or 1 if they are 0.
     """
@@ -104,7 +106,7 @@ def _middles(edges: Array) -> Array:
 
 
 def _density(values: Array, edges: Array) -> Array:
-    """Estimate a kernel density from a histogram that is smoothed by Scott's width, one a bin."""
+    """Estimate a Gaussian kernel density of Scott's width at the middle of each bin, shape (40,)."""
     heights, _ = np.histogram(values, edges, density=True)
     return _smoothed(heights, _bandwidth(values, edges, power=1 / 5))
 
@@ -122,7 +124,7 @@ def _bandwidth(values: Array, edges: Array, *, power: float) -> float:
 def _draw_marginal(axes: Axes, values: Array, edges: Array) -> None:
     """Draw a parameter's density, median and central 90 %, titled with these numbers.
 
-    They are rounded to two digits of the width of the 90 %.
+    They are rounded to two digits of the width of the 90 %, to three decimals if that is 0.
     """
     axes.fill_between(_middles(edges), _density(values, edges), color=BLUE, alpha=0.45, lw=0)
     low, median, high = np.quantile(values, (0.05, 0.5, 0.95))

@@ -85,7 +85,10 @@ def new_figure(title: str, simulated: bool, *, width: float, height: float) -> F
 
 
 def _title_lines(text: str, figure: Figure) -> str:
-    """Break a title into lines as wide as the figure; into two after the first colon, if it has."""
+    """Break a title into lines as wide as the figure.
+
+    If it takes two lines, they are broken after its first colon and blank, where both parts fit.
+    """
     letters = int(_TITLE * figure.get_figwidth())
     lines = textwrap.wrap(text, letters)
     head, colon, tail = " ".join(text.split()).partition(": ")

@@ -83,7 +83,8 @@ class _LoadCurve:
 def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
     """Compute the posterior slip curve at each load level.
 
-    The bands are quantiles over about `_CURVES` draws; the peaks are medians over all draws.
+    The bands are quantiles over every kth draw, `_CURVES` to twice as many of them, or all if there
+    are fewer; the peaks are medians over all draws.
     """
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
     values = draws[:: max(1, len(draws) // _CURVES)].T[:, :, None]
@@ -98,9 +99,10 @@ def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) 
 
 
 def _peaks(law: SlipLaw, draws: Array, load: float, slip: Array) -> Array:
-    """Return slip and force of the peaks inside the tested slip, medians over all draws.
+    """Return slip and force of driving and braking peak inside the tested slip, shape (0 to 2, 2).
 
     They are those of the tables: medians of each draw's own peak, not the peak of the median curve.
+    The force of a draw that peaks beyond the largest tested slip is that at this slip.
     """
     own = np.broadcast_to(law.peak_slip(load, draws.T), len(draws))
     braking = np.broadcast_to(braking_peak_slip(law, load, draws.T), len(draws))

@@ -117,7 +117,10 @@ def slip_law(curve: SlipCurve, *, title: str, simulated: bool) -> Figure:
 
 
 def _loads(curve: SlipCurve) -> tuple[float, ...]:
-    """Return the thesis's loads that were tested; if under two, four over the tested range [N]."""
+    """Return the thesis's loads in the tested range, with a margin of 1 % [N].
+
+    If they are fewer than two, four loads evenly spaced over the tested range are returned.
+    """
     low, high = curve.load_range
     inside = tuple(load for load in THESIS_LOADS if 0.99 * low <= load <= 1.01 * high)
     return inside if len(inside) > 1 else tuple(np.linspace(low, high, 4).tolist())

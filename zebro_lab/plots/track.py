@@ -132,6 +132,7 @@ def _outline(axes: Axes, group: SeenMarks) -> None:
 
 
 def _path(axes: Axes, path: Array, ahead: Array) -> None:
+    """Draw the path, and arrows from its points to the points ahead, shape (n, 2) each [px]."""
     axes.plot(*path.T, color=sheet.RED, lw=1.2, marker="o", ms=2.5, label=_ORIGIN)
     _arrows(axes, path, ahead - path)
 

@@ -180,6 +180,9 @@ def leg_panels(
 ) -> Figure:  # fmt: skip
     """Draw one to three lines over time in a panel per leg, arranged as on the robot from above.
 
+    A note is written in each panel if no value of a leg in contact is finite: the model computes
+    none.
+
     Args:
         t: Times, shape (n,) [s].
         contact: Whether each leg is on the ground, which is shaded, shape (n, 6).
@@ -259,7 +262,7 @@ def time_grid(
     t: Array, rows: Sequence[Array], titles: Sequence[str], *, least: Array, cut: float,
     width: float, title: str,
 ) -> Figure:  # fmt: skip
-    """Draw each column over time in a panel, below it those of further arrays, as its rates.
+    """Draw each column over time in a panel, and below it that of further arrays, such as rates.
 
     Args:
         t: Times, shape (n,) [s].
@@ -267,7 +270,8 @@ def time_grid(
         titles: Title of each column, k of them.
         least: Least range of each panel's axis, shape (len(rows), k): what the solver leaves of a
             quantity that is zero is not blown up.
-        cut: Share of the values left out at either end, but of the first row, which is marked [-].
+        cut: Share of the values that lie beyond the limits at either end, and are marked there; of
+            the first row none does [-].
         width: Width of the figure [inch].
         title: Title of the figure; "(simulated)" is appended.
     """

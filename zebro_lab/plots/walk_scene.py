@@ -37,7 +37,7 @@ def heights_along(ground: Ground, position: Array) -> Array:
 
 
 def ground_lines(ground: Ground, low: Array, high: Array) -> list[Array]:
-    """Return lines along x and y that lie on the ground, shape (m, 3) each [m].
+    """Return lines along x and y at each `_GRID` that lie on the ground, shape (m, 3) each [m].
 
     Args:
         ground: The ground.

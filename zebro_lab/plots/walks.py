@@ -50,6 +50,6 @@ def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
 
 
 def _title(each: Contraction) -> str:
-    """Return a parameter's name, with a remark if the walks do not inform it."""
+    """Return a parameter's name, with a remark unless it is informed (`Contraction.informed`)."""
     name = each.name.replace("_", " ")
     return name if each.informed else f"{name}: not informed"

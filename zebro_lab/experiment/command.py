@@ -269,6 +269,7 @@ class _Asker:
         self._asked = ""
 
     def __call__(self, text: str, normal: float) -> None:
+        """Show a new instruction with the present normal force [N], and wait for Enter."""
         if text and text != self._asked:
             self._asked = text
             question = f"{text} with Enter (now {normal:.3f} N)"

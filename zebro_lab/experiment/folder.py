@@ -109,6 +109,7 @@ class ExperimentFolder:
         )  # fmt: skip
 
         def open_now() -> None:
+            """Open the run folder; called in the writing thread."""
             self._recorder = self._enter(manifest)
             self._start = start
 
@@ -126,6 +127,7 @@ class ExperimentFolder:
         raw = batch.raw
 
         def write_now() -> None:
+            """Write the samples to the open run, if any; called in the writing thread."""
             if self._recorder is not None:
                 for stream, samples in raw.items():
                     if samples:

@@ -132,6 +132,7 @@ class JournalWriter:
 
 
 def _write_all(handle: int, data: bytes) -> None:
+    """Write all bytes to a file descriptor, where one call may write a part only."""
     while data:
         data = data[os.write(handle, data) :]
 

@@ -47,7 +47,7 @@ def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dic
 
 
 def finished_points(data: Path, journal: Journal) -> Finished:
-    """Find the points of a plan that are finished; exclude repeated, lost and interrupted runs.
+    """Find the points of a plan that are finished; exclude runs that repeat one or lost their log.
 
     A run is excluded by an entry in its `run.json`. Other recordings and plans are left as they
     are. A point counts as finished also if its accepted run was excluded since.

@@ -281,6 +281,7 @@ def experiment_screen(
     screen = QuietScreen(console) if quiet else ExperimentScreen(console, live)
 
     def draw() -> None:
+        """Draw until the screen is closed; on a terminal with the live part shown."""
         if live is None:
             screen.draw_on()
             return

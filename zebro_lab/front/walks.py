@@ -162,6 +162,7 @@ def _model_request(
     robot: PathLike | None,
     band: BandRequest,
 ) -> ModelRequest:
+    """Return the options of model and band; arguments as those of `walk_gait`."""
     return ModelRequest(slip, model, ground=optional(ground), robot=optional(robot), band=band)
 
 

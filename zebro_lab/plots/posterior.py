@@ -102,11 +102,12 @@ def _edges(values: Array) -> Array:
 
 
 def _middles(edges: Array) -> Array:
+    """Return the middle of each bin, one fewer than edges."""
     return (edges[1:] + edges[:-1]) / 2
 
 
 def _density(values: Array, edges: Array) -> Array:
-    """Estimate a Gaussian kernel density of Scott's width at the middle of each bin, shape (40,)."""
+    """Estimate a Gaussian kernel density, of Scott's width, at the middles of the bins, (40,)."""
     heights, _ = np.histogram(values, edges, density=True)
     return _smoothed(heights, _bandwidth(values, edges, power=1 / 5))
 

@@ -118,6 +118,7 @@ class WalkScene:
         self._show_ground(position)
 
     def _line(self, **style: Any) -> Line3D:
+        """Add an empty line to the axes and return it; `show` sets its points."""
         return cast("Line3D", self._axes.plot([], [], [], **style)[0])
 
     def _show_legs(self, arcs: Array, contact: NDArray[np.bool_], yaw: float) -> None:

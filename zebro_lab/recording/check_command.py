@@ -111,6 +111,7 @@ class _Terminal:
 
 
 def _leg_number(text: str) -> int:
+    """Parse the number of a leg, 1 to 6; raise `BadParameter` for anything else."""
     if text not in {"1", "2", "3", "4", "5", "6"}:
         raise typer.BadParameter(f"found '{text}'; expected {_LEGS}")
     return int(text)

@@ -225,6 +225,7 @@ class RunRecorder:
             self._fail(f"the run's end was not written within {JOIN_LIMIT + END_LIMIT:g} s")
 
     def _start_thread(self, task: Callable[[RunFiles], None], files: RunFiles) -> threading.Thread:
+        """Start `task(files)` in a daemon thread; RecordingError if it cannot start."""
         thread = threading.Thread(target=task, args=(files,), daemon=True, name="recorder")
         with needing_threads():
             thread.start()

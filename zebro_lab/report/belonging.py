@@ -161,6 +161,7 @@ def _leg_files(run: ReportedRun) -> Mapping[str, str]:
 
 
 def _present(run: ReportedRun, name: str) -> bool:
+    """Return whether a run has this result, of prediction, track and validation."""
     return name in run.parts and not run.parts[name].missing
 
 
@@ -192,8 +193,10 @@ def _read(part: ReportPart) -> set[str]:
 
 
 def _inputs(part: ReportPart) -> Mapping[str, object]:
+    """Return the hash of each file that a result was made from, by name; empty if not stated."""
     return _mapping(part.manifest.get("inputs"))
 
 
 def _mapping(value: object) -> Mapping[str, object]:
+    """Return a value of a manifest if it is a mapping, else an empty one."""
     return value if isinstance(value, Mapping) else {}

@@ -150,6 +150,7 @@ def _opened(data: bytes, file: Path) -> Image.Image:
 
 
 def _as_webp(image: Image.Image, **how: int) -> bytes:
+    """Encode a picture as WebP with these options of Pillow's encoder."""
     file = io.BytesIO()
     image.save(file, "WEBP", **how)
     return file.getvalue()

@@ -63,6 +63,7 @@ def draw_suggested(file: Path, suggested: Suggested) -> None:
 
 
 def _targets(suggested: Suggested) -> str:
+    """Return the names of the targets, each once, separated by commas."""
     return ", ".join(dict.fromkeys(row.target for row in suggested.expected))
 
 

@@ -194,8 +194,8 @@ def candidates(slips: Sequence[float]) -> tuple[Array, NDArray[np.intp]]:
 def durations(plan: Plan, knowledge: Knowledge) -> tuple[float, ...]:
     """Return the durations of a point that are tried, increasing [s].
 
-    They are `DURATIONS`, in even ratios from the shortest that holds a block and the window of
-    settling to `LONGEST`; and that of the plan, unless it is shorter.
+    They are `DURATIONS`, rounded to two digits, in even ratios from the shortest that holds a block
+    and the window of settling to `LONGEST`; and that of the plan, unless it is shorter.
     """
     shortest_run = max(plan.settle.window, knowledge.conditions.length / knowledge.rate)
     even = np.geomspace(shortest_run, max(LONGEST, shortest_run), DURATIONS)
@@ -221,6 +221,7 @@ def most_slips(plan: Plan, seconds: float, *, least: int) -> int | None:
     """
 
     def takes(count: int) -> float:
+        """Return the duration of the plan with `count` points at each load [s]."""
         return seconds_of(replace(plan, points=replace(plan.points, slips=(0.0,) * count)))
 
     if takes(least) > seconds:

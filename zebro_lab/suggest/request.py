@@ -160,4 +160,5 @@ def _force(text: str, option: str) -> ForceText:
 
 
 def _refused(text: str, option: str) -> BadParameter:
+    """Return the error for a text of another form than a target's."""
     return BadParameter(f"'{text}' is no target; expected {EXPECTED}", param_hint=option)

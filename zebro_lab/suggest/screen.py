@@ -67,6 +67,7 @@ def _named(row: Expected) -> str:
 
 
 def _is_force(row: Expected) -> bool:
+    """Return whether a row is of a force, whose standard deviations are relative."""
     return row.part.startswith("force@")
 
 
@@ -79,5 +80,6 @@ def _sd(sd: float, row: Expected) -> str:
 
 
 def _minutes(seconds: float) -> str:
+    """Format a time [s] in whole minutes and seconds; below a minute in seconds alone."""
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"

@@ -139,6 +139,7 @@ def _marker_line(marker: FloorMarker) -> Mapping[str, float]:
 
 
 def _point_line(point: FloorPoint) -> Mapping[str, float]:
+    """Return a point's keys as an inline TOML table."""
     return _line(x=point.x, y=point.y, z=point.z, position_sd=point.position_sd)
 
 

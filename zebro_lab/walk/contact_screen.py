@@ -19,7 +19,10 @@ _SHOWN = 12  # states of a walk that does not repeat; `contacts.csv` has all
 
 
 def contact_lines(contacts: WalkContacts) -> list[str]:
-    """Say the sequence of contact states, and what decides contact."""
+    """Format contacts as lines: what decides contact, the cycle of states, joined states.
+
+    Without a cycle the first `_SHOWN` states are listed, and why there is none.
+    """
     sequence, cycle = contacts.sequence, contacts.cycle
     lines = [f"contact states by {contacts.rule}:"]
     if cycle is not None:
@@ -42,6 +45,7 @@ def contact_lines(contacts: WalkContacts) -> list[str]:
 
 
 def _with_start(state: ContactState) -> str:
+    """Format the legs of a contact state, and the time at which it begins [s]."""
     return f"{named_legs(state.legs)} ({state.start:.2f} s)"
 
 
@@ -80,6 +84,7 @@ _SHOWN_MEANS = (
 
 
 def _cell(value: float | None, scale: float) -> str:
+    """Format a value times `scale` with two decimals; `-` for None."""
     return "-" if value is None else f"{scale * value:.2f}"
 
 

@@ -92,6 +92,7 @@ def _draw(request: PictureRequest, walked: Walked, folder: Path, watcher: Watche
         from zebro_lab.plots.animation import animate
 
         def follow(fraction: float) -> None:
+            """Show the share that is drawn; raise `WalkStopped` if a stop is requested."""
             watcher.step("filming", fraction)
             _raise_if_stopped(watcher)
 
@@ -110,6 +111,7 @@ def _shown(request: PictureRequest, walked: Walked) -> PictureRequest:
 
 
 def _raise_if_stopped(watcher: Watcher) -> None:
+    """Raise `WalkStopped` if the watcher requests a stop."""
     if watcher.stop_requested():
         raise WalkStopped("stopped; nothing was written")
 

@@ -61,7 +61,9 @@ class PredictionFile:
 
 
 def read_prediction(path: Path) -> PredictionFile:
-    """Read a walk folder (or its path.csv) with draws, and compute baselines; or a table of poses.
+    """Read a walk folder (or its path.csv), draws if any, and compute baselines; or a pose table.
+
+    The only baseline of a table is the one that stands still.
 
     Raises:
         ZebroLabError: A file is missing or damaged, or is not a path.

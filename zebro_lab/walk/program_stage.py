@@ -155,4 +155,5 @@ def _unwalked(
 
 
 def _heights(ground: GroundFile | None) -> Ground:
+    """Return the heights of a ground; level ground for None."""
     return FLAT if ground is None else ground.ground

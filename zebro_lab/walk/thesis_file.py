@@ -30,7 +30,9 @@ COLUMNS = (
 
 
 def write_thesis(file: Path, path: WalkPath, robot: Robot) -> None:
-    """Write the quantities of the thesis's model as CSV in SI, if the walk is of this model.
+    """Write the quantities of the thesis's model as CSV in SI, a row about every 10 ms.
+
+    Nothing is written if the walk is of another model.
 
     Frames and forces are computed and written part by part, since all at once of a long walk they
     take more memory than the walk.

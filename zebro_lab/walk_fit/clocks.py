@@ -33,6 +33,7 @@ def checked_clock(slip: Slip, *, largest: float = LARGEST_OFFSET) -> Clock:
     """
 
     def check(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
+        """Return the track unchanged; `DataError` if its clock differs, as said above."""
         try:
             path = _predicted_path(legs, robot, slip)
             found = clock_difference(track.poses, path, largest=largest)
@@ -62,6 +63,7 @@ def estimated_clock_of(slip: Slip) -> Clock:
     """
 
     def estimate(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
+        """Return the track with the estimated offset added to its times."""
         path = _predicted_path(legs, robot, slip)
         return estimated_clock(track, path, otherwise="Add the offset to its times")[0]
 

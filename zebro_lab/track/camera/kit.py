@@ -260,6 +260,7 @@ def _bar(width: float) -> tuple[Rectangle, ...]:
 
 
 def _bar_text(width: float) -> Text:
+    """Return the line of text above the 100 mm bar of a page of this width [mm]."""
     return Text(width / 2, 15.5, "100 mm: measure this bar before you use the page", 7, True)
 
 

@@ -113,6 +113,7 @@ def _board_length(text: str, part: str) -> float:
 
 
 def _board_error(text: str, problem: str) -> SettingsError:
+    """Return the error for a board: its text, what is wrong, and the forms that are accepted."""
     return SettingsError(f"'{text}': {problem}; {_BOARD_EXPECTED}", key="--board")
 
 

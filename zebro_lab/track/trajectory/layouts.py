@@ -88,11 +88,14 @@ def _numbers(count: int) -> list[str]:
 
 
 def _is_whole(values: Array) -> bool:
+    """Return whether all values are whole numbers."""
     return bool(np.all(values == np.round(values)))
 
 
 def _layout_of_count(table: RawTable, plane: str) -> Layout | None:
-    """Infer the layout from the count of numbers: 12 are KITTI, 8 between blanks TUM; else None.
+    """Infer the layout from the count of numbers: 12 are KITTI, 8 between blanks or tabs TUM.
+
+    None for any other table.
 
     Raises:
         DataError: There are 8, but the body is upright only if w is the first number of the

@@ -194,7 +194,8 @@ def _first_of_stamps(
     """Return the first row of each stamp, and a note on those that are left out.
 
     Raises:
-        DataError: Over one in a hundred rows, and at least two, repeat a stamp with another pose.
+        DataError: Rows with the stamp of the row before and another pose are more than one plus
+            the share `_MOST_REPEATED` of all rows.
     """
     t = columns["t_s"]
     poses = np.column_stack([column for name, column in columns.items() if name != "t_s"])

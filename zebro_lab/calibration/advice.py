@@ -79,7 +79,10 @@ def _measure_slips(advice: MeasureSlips) -> str:
 
 @advice_text.register
 def _measure_also(advice: MeasureAlso) -> str:
-    """Advise to run a changed plan: other loads, slip ratios or repeats, or longer runs."""
+    """Advise to run the plan again: with other loads, slip ratios or repeats, or longer runs.
+
+    Empty loads and slip ratios, no repeats and `times` of 1 leave the plan as it is.
+    """
     points: dict[str, str] = {}
     if advice.loads:
         points["loads"] = f"[{', '.join(f'{load:.3g}' for load in advice.loads)}]"

@@ -121,7 +121,7 @@ class LegLog:
 
     @property
     def columns_file(self) -> Path | None:
-        """The `columns.toml` that was read; None without one."""
+        """The `columns.toml` that was read; None without one, or if it has another name."""
         return next((file for file in self.files if file.name == COLUMNS_FILE), None)
 
 
@@ -143,10 +143,11 @@ def legs_of_table(
         mending: What to do about a gap that cannot be bridged, for the message.
 
     Raises:
-        DataError: A column or value is missing, there are fewer than two rows, time does not
-            increase or has a gap that `bridged_gaps` refuses, or a leg turns by more than 2.5 rad
-            between samples, or by more than pi/2 where angles are wrapped to one turn, or jumps by
-            more than that on top of one turn; names the cell.
+        DataError: A column or value is missing, there are fewer than two rows, time does not fit
+            seconds though no unit is stated, does not increase or has a gap that `bridged_gaps`
+            refuses, or a leg turns by more than 2.5 rad between samples, or by more than pi/2 where
+            angles are wrapped to one turn, or jumps by more than that on top of one turn; names the
+            cell.
     """
     t = mapping.times(table, "t", advice=_ADVICE)
     angles = [_angle(table, name, mapping) for name in ANGLES]

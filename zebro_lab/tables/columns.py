@@ -140,7 +140,7 @@ class MappedColumn:
             si_unit: SI unit of the canonical column; None if its cells are text.
 
         Raises:
-            DataError: The unit of the file is unknown or measures another quantity.
+            DataError: The unit of the file is unknown, ambiguous ("grad") or of another quantity.
         """
         if self.unit_stated or si_unit is None:
             return self

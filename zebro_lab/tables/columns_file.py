@@ -169,7 +169,7 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
         si_unit: SI unit of the column; None if its cells are text.
 
     Raises:
-        SettingsError: Header, unit, scale, sign or slip definition is invalid.
+        SettingsError: Header, unit, scale, sign, offset or slip definition is invalid.
     """
     found = columns.value(name)
     if isinstance(found, str):  # t = "ET": only a header, in SI

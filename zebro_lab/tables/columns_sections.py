@@ -77,9 +77,10 @@ def read_section(
 def nearest_columns(kind: str, folder: Path) -> tuple[Path | None, tuple[Path, str] | None]:
     """Find the `columns.toml` for a kind of table: in its folder, or in the nearest one above.
 
-    A file that has nothing for this kind is passed over, but taken, for its source, if there is no
-    other. One without sections above the table's folder is for legs if it maps their angles, else
-    for rigs. Results of commands have their own headers: for them nothing above is looked up.
+    Files that have nothing for this kind are passed over; if there are no others, the nearest of
+    them whose source would hold for the kind (`_gives_source`) is taken. One without sections above
+    the table's folder is for legs if it maps their angles, else for rigs. Results of commands have
+    their own headers: for them nothing above is looked up.
 
     Args:
         kind: One of `KINDS`.

@@ -54,7 +54,8 @@ def read_csv_file(path: Path, *, bare: bool = False) -> RawTable:
     Raises:
         NotFound: There is no such file.
         DataError: The file is no text or no whole gzip file, has no header, a row has more cells
-            than the header, the layout is ambiguous, or a size limit is exceeded.
+            than the header, or fewer where blanks separate them, the layout is ambiguous or not
+            that of one table (see `find_layout`), or a size limit is exceeded.
     """
     data = read_unpacked(path)
     encoding = _encoding(path, data)
@@ -109,7 +110,10 @@ def _head(path: Path, head: bytes, encoding: str) -> list[Line]:
 
 
 def _unbroken(lines: list[Line]) -> list[Line]:
-    """Join the lines of a cell in quotes that has line breaks, as headers of spreadsheets may."""
+    """Join the lines of a cell in quotes that has line breaks, as headers of spreadsheets may.
+
+    After `_CELL_LINES` lines without a closing quote they are taken as they are, joined.
+    """
     joined: list[Line] = []
     parts: list[str] = []
     for number, line in lines:

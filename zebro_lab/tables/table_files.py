@@ -80,8 +80,8 @@ def read_table_file(path: Path, *, sheet: str | None = None, bare: bool = False)
     Raises:
         NotFound: There is no such file.
         DataError: The file has another suffix, no rows, a line of means below them, is damaged,
-            too large, or not a table; or a workbook has no such sheet, or several and none is
-            named.
+            too large, or not a table, or needs a package that is not installed; or a workbook has
+            no such sheet, or several and none is named.
     """
     if not path.exists():
         raise NotFound(f"{path}: no such file")

@@ -84,7 +84,9 @@ def find_layout(lines: Sequence[Line], *, bare: bool = False) -> TextLayout:
         bare: Whether lines of numbers without a header are a table, too, of columns "1", "2", ….
 
     Raises:
-        DataError: There is no header, or several layouts fit.
+        DataError: There is no header, several layouts fit, or a row has more cells than the header;
+            or all lines are comments, times of receipt stand before them, the table is transposed,
+            or it is one of several segments of LabVIEW.
     """
     _require_no_receipt(lines)
     below = after_lvm_header(lines)

@@ -102,7 +102,10 @@ class Track:
         return self.joint.marginal
 
     def covariance_given(self, causes: Sequence[str]) -> Array:
-        """Compute the covariance of each sample if some causes of errors were known, (n, 3, 3)."""
+        """Compute each sample's covariance if `causes`, keys of `shared.slots`, were known.
+
+        Shape (n, 3, 3).
+        """
         return replace(self.joint, errors=self.shared.given(causes)).marginal
 
     @property

@@ -222,7 +222,10 @@ class GuardedAcquisition:
             longest: Timeout; may be infinite [s].
 
         Returns:
-            Whether the condition held before the timeout. Raises as `poll`.
+            Whether the condition held before the timeout.
+
+        Raises:
+            RigError, StopRequested, SinkFailed: As `poll`.
         """
         end = self._clock.now() + longest
         while self._clock.now() < end:

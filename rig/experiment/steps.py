@@ -209,7 +209,8 @@ class DurationEstimate:
 def estimate(plan: Plan, steps: tuple[Step, ...]) -> DurationEstimate:
     """Estimate the duration of steps: setting loads, ramps, settling and recording.
 
-    The first step sets its load. A load takes `patience` and two ramps.
+    The first step sets its load. A load takes `patience` and two ramps; a point takes `RISE`, the
+    window of the settling criterion, and its duration.
 
     Args:
         plan: Plan of the steps.

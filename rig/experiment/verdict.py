@@ -49,7 +49,10 @@ def span(readings: Readings) -> float:
 
 
 def halves(readings: Readings) -> tuple[Readings, Readings]:
-    """Split one or more readings at the middle of their time, which the second half includes."""
+    """Split one or more readings at the middle of their time, which the second half includes.
+
+    A single reading is the second half, and the first one is empty.
+    """
     middle = (readings.t[0] + readings.t[-1]) / 2
     late = readings.since(middle)
     early = len(readings) - len(late)

@@ -181,7 +181,8 @@ class DriveBus(LinkedStream[CanLink]):
         """Receive and feed the watchdogs until a condition holds; keep samples for the next `read`.
 
         Raises:
-            RigTimeout: The condition did not hold within `timeout`.
+            RigTimeout: The condition did not hold within `timeout` [s]; `problem` and `advice` are
+                its message.
         """
         end = self._clock.now() + timeout
         while not holds():

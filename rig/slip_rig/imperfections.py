@@ -163,7 +163,7 @@ def bump_rise(angle: Array, *, height: float, width: float) -> Array:
     Args:
         angle: Ground-disc angle from the top of the bump, any number of turns [rad].
         height: Rise of the load at the top of the bump, per load [-].
-        width: Angle of the disc over which the whole bump extends [rad].
+        width: Angle of the disc over which the whole bump extends; 0 for no bump [rad].
 
     Returns:
         Rise of the load, per load off the bump; 0 off the bump, same shape as `angle` [-].

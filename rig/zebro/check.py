@@ -178,7 +178,8 @@ def find_lift_off(
         counts_per_revolution: Counts of a whole turn.
 
     Returns:
-        The angle whose hip height is nearest to that at touchdown.
+        Of the two angles that the bisection leaves, the one whose hip height is nearest to that at
+        touchdown.
     """
     count = 2 * math.pi / counts_per_revolution
     heights: dict[int, float] = {}

@@ -66,6 +66,7 @@ class PacketRobot(_ByteRobot):
         self._framer = CobsFramer(longest=LONGEST)
 
     def _answer(self, now: float, received: bytes) -> list[bytes]:
+        """Execute the packets received; return those of the frames that are due."""
         for content in self._framer.feed(received):
             packet = decode_packet(content)
             if packet is not None:
@@ -92,6 +93,7 @@ class DumpRobot(_ByteRobot):
     """Simulated leg module that dumps its registers and ignores commands; layout `dump`."""
 
     def _answer(self, now: float, received: bytes) -> list[bytes]:
+        """Return the dumps of the frames that are due; the bytes received are ignored."""
         del received  # the real module ignores commands, too
         profile = self.legs.profile
         return [_registers(profile, frame.counts) + SYNC for frame in self.legs.frames(now)]
@@ -104,6 +106,7 @@ class PolledRobot(_ByteRobot):
     _counts: tuple[int, ...]
 
     def _answer(self, now: float, received: bytes) -> list[bytes]:
+        """Execute whole requests, return the answers; keep an incomplete one for the next call."""
         for frame in self.legs.frames(now):
             self._counts = frame.counts
         self._inbox += received

@@ -127,7 +127,8 @@ class PastedReading(Reading):
     def align(self, poses: Array) -> tuple[Exposure, ...]:
         """Align the visible part of each exposure, in order; keep the raster's pose on failure.
 
-        The poses are those of `find`: each exposure hides pixels of those after it.
+        The poses are those of `find`: each exposure hides pixels of those after it. Covariances are
+        widened by `disturbance_sd` and `strip_sd`.
         """
         known, found = self.known, []
         template, visible = known.body_template(), ~known.hidden

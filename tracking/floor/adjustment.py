@@ -36,8 +36,7 @@ from tracking.floor.marks import FloorMap
 from tracking.markers import edge_growth
 from tracking.shared import EDGES, LENS, SharedErrors, mark_name, stand_name
 
-_CHANCE = 0.95
-"""Quantile of chi-squared below which a sum of squared residuals counts as chance [-]."""
+_CHANCE = 0.95  # quantile of chi-squared below which a sum of squared residuals counts as chance
 _REWEIGHINGS = 5  # largest number of refits with new variances
 EDGE_REACH = 0.3
 """Logarithm of distance over which the common error of edges changes as much as it is large [-]."""
@@ -224,7 +223,8 @@ class Adjustment:
         return slots
 
     @property
-    def _lens_slot(self) -> slice:  # columns of the lens's unknowns, after those of the marks
+    def _lens_slot(self) -> slice:
+        """Columns of the lens's unknowns among all: after those of the marks."""
         start = max(slot.stop for slot in self._mark_slots.values())
         return slice(start, start + self._lens_root.shape[1])
 
@@ -284,7 +284,7 @@ class Adjustment:
 
     @cached_property
     def usual_distance(self) -> float:
-        """Mean logarithm of the distance of the floor's marks from the cameras, as measured [-]."""
+        """Mean logarithm of the distance from the cameras at `poses` to the marks as measured."""
         logs = [
             np.log(np.linalg.norm(self.floor.marks[key].points.mean(axis=0) - pose.position))
             for view, pose in zip(self.views, self.poses, strict=True)

@@ -118,7 +118,8 @@ class _Rectangle:
     def mean_products(self, left: _Waves, right: _Waves) -> _Field:
         """Average left(p) right(p + lag), summed over the k transformed fields, by lag.
 
-        Lags of either sign are taken alike. Shape (height, width), negative lags from the end.
+        Averages at a lag and at the opposite one are averaged, too. Shape (height, width), negative
+        lags from the end.
         """
         power = np.einsum("kij,kij->ij", left, right.conj()).real
         return np.asarray(fft.irfft2(power, self.used.shape), np.float32) / self.pairs

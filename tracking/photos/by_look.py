@@ -327,7 +327,10 @@ def _find_batch(job: _Search) -> list[BodyCandidates | None]:
 def _find_one(
     job: _Search, photo: Photo, view: CameraPose, template: BodyTemplate, near: Array | None
 ) -> BodyCandidates | None:
-    """Find the robot near a place, if one is given; else, or if it fails, in the whole picture."""
+    """Find the robot near a place, if one is given; else, or if it fails, in the whole picture.
+
+    None where it is not found, or the file cannot be read any more.
+    """
     try:
         pixels = read_pixels(photo.path, size=job.camera.size)
     except PhotoError:

@@ -115,7 +115,11 @@ def look_at(photo: Photo, wanted: Wanted, hint: Detection | None = None) -> Phot
 def _detected(
     name: str, pixels: NDArray[np.uint8], wanted: Wanted, hint: Detection | None
 ) -> Detection:
-    """Detect markers; floor markers that `hint` does not show are sought only if that fails."""
+    """Detect markers; floor markers that `hint` does not show are sought only if that fails.
+
+    Raises:
+        PhotoError: As `detect`; never if no robot is wanted.
+    """
     robot = wanted.robot
     if robot is None:
         return _floor_alone(name, pixels, wanted.floor)

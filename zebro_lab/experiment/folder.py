@@ -263,7 +263,7 @@ class ExperimentFolder:
         )  # fmt: skip
 
     def _put(self, write: Callable[[], None], *, wait: bool = False) -> None:
-        """Queue a job; in simulated time, with `wait`, return once it is done."""
+        """Queue a job, or raise SinkFailed; in simulated time, `wait` returns once it is done."""
         job = _Job(write)
         try:
             self._jobs.put_nowait(job)

@@ -174,6 +174,9 @@ def _add_legs(
     """Add the robot's legs: replayed, simulated (`twin`) or real, and the gait that moves them.
 
     Without a gait, legs that send their time in packets are read with pauses.
+
+    Raises:
+        SettingsError: A replayed robot is to play a gait.
     """
     address, play = str(request.zebro), request.play
     if address.startswith(REPLAY):

@@ -141,7 +141,11 @@ def parse_target(text: str, *, option: str = TARGET) -> TargetText:
 
 
 def _force(text: str, option: str) -> ForceText:
-    """Parse `force@SLIP,…[:LOAD]`: slips that are not 0, at most 1, and a load above 0."""
+    """Parse `force@SLIP,…[:LOAD]`: slips that are not 0, at most 1, and a load above 0.
+
+    Raises:
+        BadParameter: The text has another form, or a number is outside these ranges.
+    """
     slips, colon, load = text.removeprefix(FORCE).removeprefix("@").partition(":")
     try:
         numbers = tuple(float(each) for each in slips.split(","))

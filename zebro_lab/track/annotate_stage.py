@@ -108,7 +108,12 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
 
 
 def _templates(request: AnnotateRequest) -> tuple[MarkedTop, ...]:
-    """Return the template that --corners marks in --photo; none if no corners are given."""
+    """Return the template that --corners marks in --photo; empty if no corners are given.
+
+    Raises:
+        SettingsError: There are not four corners, the photograph is not named, or a pixel or size
+            is invalid.
+    """
     if request.corners is None:
         return ()
     corners = tuple(_pair(text, "--corners") for text in request.corners.split())
@@ -127,6 +132,9 @@ def _plate(request: AnnotateRequest) -> TopPlate:
     """Parse the size of the robot's top from --plate, LENGTHxWIDTH@HEIGHT above the body's centre.
 
     Without --plate it is the body's length and width at half the body's height, of robot.toml.
+
+    Raises:
+        SettingsError: The text has another form, or a side is not above 0.
     """
     margin = option_to_si(request.margin, "m", key="--margin", usual=LARGEST_PRINT)
     if request.plate is None:
@@ -147,7 +155,10 @@ def _plate(request: AnnotateRequest) -> TopPlate:
 
 
 def _clicks(request: AnnotateRequest) -> Mapping[str, Mapping[str, Click]]:
-    """Parse --click PHOTO:NAME=U,V into pixels by photograph and name of the floor's point."""
+    """Parse --click PHOTO:NAME=U,V into pixels by photograph and name of the floor's point.
+
+    A later click on the same point replaces an earlier one. `SettingsError` for another form.
+    """
     clicks: dict[str, dict[str, Click]] = {}
     for text in request.clicks:
         place, _, pixel = text.rpartition("=")
@@ -167,7 +178,11 @@ def _corrections(request: AnnotateRequest) -> tuple[Correction, ...]:
 
 
 def _move(text: str) -> Move:
-    """Parse --move PHOTO:X,Y,YAW [m, m, deg] into a correction, whose yaw is in radians."""
+    """Parse --move PHOTO:X,Y,YAW [m, m, deg] into a correction, whose yaw is in radians.
+
+    Raises:
+        SettingsError: The text has another form.
+    """
     photo, _, place = text.rpartition(":")
     numbers = _numbers(place, "--move")
     if not photo or len(numbers) != 3:
@@ -176,7 +191,7 @@ def _move(text: str) -> Move:
 
 
 def _pair(text: str, key: str) -> Click:
-    """Parse a pixel "U,V"; `key` is the option that an error names."""
+    """Parse a pixel "U,V"; `key` is the option that a `SettingsError` names."""
     numbers = _numbers(text, key)
     if len(numbers) != 2:
         raise SettingsError(f"'{text}' is not a pixel U,V, as in 812,440", key=key)
@@ -184,7 +199,7 @@ def _pair(text: str, key: str) -> Click:
 
 
 def _numbers(text: str, key: str) -> list[float]:
-    """Parse finite numbers separated by commas; `key` is the option that an error names."""
+    """Parse finite numbers separated by commas; `key` is the option named in a `SettingsError`."""
     try:
         numbers = [float(part) for part in text.split(",")]
     except ValueError as error:

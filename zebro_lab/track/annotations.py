@@ -88,7 +88,11 @@ def _templates(table: SettingsTable) -> tuple[MarkedTop, ...]:
 
 
 def _template(table: SettingsTable) -> MarkedTop:
-    """Read one template: corners [px] and size [m] of the robot's top, optional margins [m]."""
+    """Read one template: corners [px] and size [m] of the robot's top, optional margins [m].
+
+    Raises:
+        SettingsError: There are not four corners, or a value is missing or invalid.
+    """
     found = table.value("corners_px", [])
     if not isinstance(found, list) or len(found) != 4:
         raise table.fault("expected four pixels: front left, front right, rear right, rear left "
@@ -119,7 +123,7 @@ def _pixel(table: SettingsTable, key: str) -> Click:
 
 
 def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
-    """Read the `[[correction]]` tables in order; errors count them from 1."""
+    """Read the `[[correction]]` tables in order; a `SettingsError` counts them from 1."""
     entries = table.value("correction", [])
     if not isinstance(entries, list):
         raise table.fault("expected [[correction]] tables", "correction")

@@ -81,7 +81,7 @@ def _covariance(fit: SettingsTable) -> Array:
 
 
 def _size(table: SettingsTable) -> tuple[int, int]:
-    """Read width and height of a photograph: whole numbers of at least 16 [px]."""
+    """Read width and height [px]; `SettingsError` unless both are whole numbers of 16 or more."""
     width, height = table.quantities("size", 2, "dimensionless")
     if min(width, height) < 16 or width % 1 or height % 1:
         raise table.fault(f"is {width:g} x {height:g} px; expected integers of at least 16", "size")

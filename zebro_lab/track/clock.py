@@ -120,8 +120,10 @@ def _as_given(
 ) -> CountedTimes:
     """Return times that are not those of a clock unchanged, with a note if their origin is unknown.
 
-    The note is for photographs of a run; a table's times are counted from its start. A given moment
-    `start` raises, since only times of a clock can be counted from it.
+    The note is for photographs of a run; a table's times are counted from its start.
+
+    Raises:
+        SettingsError: A moment `start` is given; only times of a clock can be counted from it.
     """
     if start is not None:
         raise SettingsError(

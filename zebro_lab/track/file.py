@@ -147,7 +147,12 @@ def tum_lines(poses: Poses) -> str:
 
 
 def _poses(table: RawTable, file: Path) -> Poses:
-    """Convert columns of time, x and y to poses; yaw is unwrapped, NaN without its column."""
+    """Convert columns of time, x and y to poses; yaw is unwrapped, NaN without its column.
+
+    Raises:
+        DataError: A column is missing, a cell holds no finite number, time does not increase, or
+            there are no rows.
+    """
     si_units = ("s", "m", "m")
     t, x, y = (
         _numbers(table, _present(table, names), unit)

@@ -98,7 +98,11 @@ def even_times(cycle: float, groups: Gait) -> tuple[float, float]:
 
 
 def _segment(table: SettingsTable, leg_arc: float) -> tuple[Segment, str]:
-    """Read a segment: a stand, or a gait and its end; also return what it does, for a table."""
+    """Read a segment: a stand, or a gait and its end; also return what it does, for a table.
+
+    Raises:
+        SettingsError: A key or value is invalid, or the gait is impossible.
+    """
     if "stand" in table:
         return Segment(stand=_seconds(table, "stand")), "stand"
     text = table.text("gait")
@@ -155,7 +159,12 @@ def _times(table: SettingsTable, groups: Gait) -> tuple[float, float]:
 
 
 def _until(table: SettingsTable) -> Until:
-    """Read when a segment ends; raise `SettingsError` unless exactly one of `_ENDS` is given."""
+    """Read when a segment ends.
+
+    Raises:
+        SettingsError: Not exactly one of `_ENDS` is given, or a value is invalid; a heading is
+            above 0.
+    """
     given = [name for name in _ENDS if name in table]
     if len(given) != 1:
         raise table.fault(
@@ -185,7 +194,11 @@ def _seconds(table: SettingsTable, key: str, *, least: float = _SHORTEST) -> flo
 
 
 def _degrees(table: SettingsTable, key: str) -> float:
-    """Read an angle [deg]; refuse one below `LEAST_DEG` other than 0, which may be in radians."""
+    """Read an angle in degrees.
+
+    Raises:
+        SettingsError: Its size is below `LEAST_DEG` and not 0: it is probably in radians.
+    """
     angle = table.number(key)
     if 0 < abs(angle) < LEAST_DEG:
         raise table.fault(

@@ -63,7 +63,7 @@ def laid_out(
     )  # fmt: skip
 
     def progress(share: float) -> None:
-        """Show progress; stop if that is requested."""
+        """Show the share that is done; raise `WalkStopped` if a stop is requested."""
         watcher.step("laying out the program", share)
         if watcher.stop_requested():
             raise WalkStopped("stopped; nothing was written")

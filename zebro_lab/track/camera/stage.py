@@ -105,7 +105,10 @@ def _board_grid(text: str, part: str) -> tuple[int, int]:
 
 
 def _board_length(text: str, part: str) -> float:
-    """Parse a length above 0 and below 1 m; `text` is the whole board, for the error."""
+    """Parse a length above 0 and below 1 m; raise `SettingsError` for anything else.
+
+    `text` is the whole text of the board, for the error.
+    """
     length = option_to_si(part, "m", key="--board")
     if not 0 < length < 1:
         raise _board_error(text, f"'{part}' is not above 0 and below 1 m; give a unit, as in 25mm")

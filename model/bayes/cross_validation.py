@@ -96,6 +96,8 @@ def measured_force(
 def r_squared(measured: Array, predicted: Array) -> float:
     """Compute 1 minus the squared errors over the squared deviations from the mean, R² [-].
 
+    It is not finite where the measured values are all the same.
+
     Args:
         measured: Measured values, shape (n,).
         predicted: Predictions of the measured values, in the same unit, shape (n,).

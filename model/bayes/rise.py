@@ -58,9 +58,10 @@ def sampled_rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> SampledRise
 
 
 def _further(peaks: Array, slip: Array) -> Array:
-    """Space `SLIPS` slips evenly in their logarithm over the rise at the smallest to largest peak.
+    """Space `SLIPS` slips evenly in their logarithm over the rise to the peaks, shape (`SLIPS`,).
 
-    They end at the largest tested slip if that is before `_LAST` of the largest peak.
+    They begin at `_FIRST` of the smallest peak's slip (the 5 % quantile of its draws). They end at
+    `_LAST` of the largest peak's (the 95 % quantile), or at the largest tested slip if less.
 
     Args:
         peaks: Draws of the peak's slip at loads where most of them are finite, shape (w, m) [-].

@@ -146,6 +146,9 @@ def measured_information(posterior: SlipPosterior, z: Array) -> Array:
     Args:
         posterior: Blocks, law and priors, not straightened.
         z: Draws of its coordinates, shape (m, d).
+
+    Raises:
+        LinAlgError: The covariance of a run's blocks is singular.
     """
     found = []
     for each in z:

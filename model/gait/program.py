@@ -235,7 +235,9 @@ class ProgramLegs:
         """Return the program with its last cycle stopped: legs on the ground are held from a time.
 
         Legs in flight then still come down, at the angle at which they touch the ground beside the
-        legs that stand, so that they do not move the robot. Others do not lift off any more.
+        legs that stand, so that they do not move the robot; a leg past that angle is down at once,
+        where it is. If no leg stands, they land as in the whole cycle. Others do not lift off any
+        more.
 
         Args:
             time: From when all legs were down before the cycle to when they are after it [s].

@@ -10,10 +10,10 @@ Indices = NDArray[np.intp]
 
 
 def match_times(first: Array, second: Array, *, most: float) -> tuple[Indices, Indices]:
-    """Match each time of the sparser series with the nearest of the other, each at most once.
+    """Match each time of the shorter series with the nearest of the other, each at most once.
 
-    Of two times that are equally near, the earlier is taken; of two that are nearest to the same
-    time, the nearer, or the earlier.
+    Of series of equal number it is the second. Of two times that are equally near, the earlier is
+    taken; of two that are nearest to the same time, the nearer, or the earlier.
 
     Args:
         first: Increasing times, shape (n,) [s].

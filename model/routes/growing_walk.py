@@ -65,7 +65,8 @@ class GrowingWalk:
     def pose(self, legs: ProgramLegs) -> tuple[float, float, float]:
         """Return x, y [m] and unwrapped yaw [rad] at a program's end, to the nearest step.
 
-        What was walked up to then is walked only once.
+        What was walked up to then is walked only once. Of a program that ends before what was
+        walked last, the pose is that at the end of the latter; see `reached`.
 
         Raises:
             WalkError: The robot cannot stand at the start, or the walk diverged.

@@ -113,7 +113,7 @@ def slip_per_radius_error(slip: ArrayLike, definition: SlipDefinition | str) -> 
 
     Args:
         slip: Slip ratio in `definition` [-].
-        definition: Slip definition.
+        definition: Slip definition; ValueError for an unknown name.
     """
     kappa = np.asarray(slip, dtype=float)
     definition = SlipDefinition(definition)

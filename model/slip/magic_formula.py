@@ -127,8 +127,8 @@ class MagicFormula:
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters in the order of `values`: K, C, mu and those of the options.
 
-        These are x_m/Fn for the curvature "peak" or E for "constant"; then, with
-        `load_sensitivity`, the exponents of mu and of K.
+        These are x_m/Fn for the curvature "peak" or E for "constant", and a KeyError for any other
+        text; then, with `load_sensitivity`, the exponents of mu and of K.
         """
         return (
             *_COMMON,

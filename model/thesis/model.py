@@ -40,7 +40,9 @@ def walk_by_thesis(
         rule: What the dynamics follows where listing and text differ.
 
     Raises:
-        DomainError: A tripod or a log has no slip law, or as `walk_thesis`.
+        DomainError: A tripod or a log has no slip law, the law loses its shape at a leg's loads, or
+            as `walk_thesis` and `walk_detected`.
+        DefinitionMismatch: The slip curve's definition is not `material`.
         WalkError: The walk diverged, or no contact state fits.
     """
     if is_kinematic(reference):

@@ -109,7 +109,7 @@ def _beyond_noise(
 
     Logarithms of the runs' variances are shrunk towards their typical value in proportion to their
     sampling error, `ALIKE` times the trigamma function of half the degrees of freedom. A variance
-    that noise alone exceeds with the probability `NOISE_ALONE` counts as noise, by the F
+    that noise alone exceeds with the probability `NOISE_ALONE` or more counts as noise, by the F
     distribution of as many degrees of freedom as the shrunk variance and the noise are worth.
 
     Args:

@@ -43,7 +43,7 @@ class GroupResiduals:
 
     @property
     def p(self) -> float:
-        """Probability of a chi-square as large, if all means are zero [-]."""
+        """Probability of a chi-square as large, if all means are zero; 1 without freedom [-]."""
         return float(chdtrc(self.freedom, self.square)) if self.freedom else 1.0
 
     def worst(self) -> str:

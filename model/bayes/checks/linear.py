@@ -143,6 +143,9 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
     Args:
         posterior: The posterior density, with blocks, law and priors.
         z: Draws of its coordinates, shape (w, d).
+
+    Raises:
+        LinAlgError: The covariance of a run's blocks is singular.
     """
     centre = z.mean(axis=0)
     step = STEP * np.eye(len(centre))

@@ -21,7 +21,8 @@ class FrictionScatter:
 
     Attributes:
         sd: Standard deviation of friction between runs, over friction [-].
-        gain: Twice the log likelihood that it gains over offsets of the same size in all runs [-].
+        gain: Twice the log likelihood with this scatter less that with a scatter of the zero alone;
+            below 0 only by the coarser grid of both [-].
         runs: Relative difference of each run's friction from the curve's; 0 where the run's mean
             force is up to a tenth of the largest, shape (n_runs,) [-].
     """
@@ -37,12 +38,13 @@ class FrictionScatter:
 
 
 def friction_scatter(fit: Linearised, explained: Array) -> FrictionScatter | None:
-    """Compare a friction that scatters between runs with a zero that does, on run means.
+    """Compare friction and zero that scatter between runs with a zero alone that does.
 
-    A run's mean residual has the variance v + x², with v that of noise and slip errors, and x the
-    scatter of the zero or of friction times the run's mean force; both are maximised. Noise is
-    taken from the scatter within runs: the fitted noise, where it grows with force and hardly
-    changes in time, would be that of friction.
+    A run's mean residual has the variance v + x², or v + x² + y² f² if friction scatters too, with
+    v that of noise and slip errors, x the scatter of the zero, y that of friction and f the run's
+    mean force. The likelihood of both is maximised over a grid of x and y. Noise is taken from the
+    scatter within runs: the fitted noise, where it grows with force and hardly changes in time,
+    would be that of friction.
 
     Args:
         fit: The linearised fit.

@@ -267,7 +267,7 @@ def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Ar
 def tempered(log: Array, enough: float) -> Array:
     """Raise weights exp(log) to the largest power up to 1 with over `enough` effective draws.
 
-    The weights returned have sum one, shape (n,).
+    The weights returned have sum one, shape (n,); they are all equal where there is no such power.
     """
     low, high = 0.0, 1.0
     for _ in range(20):

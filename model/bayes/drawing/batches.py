@@ -15,7 +15,8 @@ MANY = 512  # points, from which batches are large
 def in_batches(log_density: LogDensity, threads: int) -> LogDensity:
     """Return a log density that computes batches of its points on several threads.
 
-    The batches depend on the number of points alone, and so do the results to the last bit.
+    A batch has `SMALL` points, or `LARGE` from `MANY` points in all on. It depends on the number of
+    points alone, and so do the results to the last bit.
 
     Args:
         log_density: Log density of coordinates (w, d); numpy and numba release the GIL in it.

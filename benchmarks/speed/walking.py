@@ -20,6 +20,7 @@ from benchmarks.machine import describe_machine
 from benchmarks.tables import print_table
 from model.arrays import Array
 from model.gait import LegReference, SampledReference, tripod_angles, tripod_reference
+from model.gait.tetrapod import tetrapod_reference
 from model.robot import GRAVITY, Robot
 from model.slip.magic_formula import MagicFormula
 from model.walk.dynamics import DynamicsOptions, walk
@@ -249,15 +250,21 @@ def ensemble_row(name: str, n: int, duration: float, reference: LegReference) ->
     )  # fmt: skip
 
 
+def logged(reference: LegReference) -> SampledReference:
+    """Sample a gait, as a log of leg angles holds it."""
+    t = np.arange(0.0, DURATION + 1 / LOG_RATE, 1 / LOG_RATE)
+    return SampledReference(t, reference.angles(t))
+
+
 def time_ensembles() -> None:
     """Print what ensembles take, by draws, duration and kind of reference."""
-    constant = gait()
-    t = np.arange(0.0, DURATION + 1 / LOG_RATE, 1 / LOG_RATE)
-    log = SampledReference(t, constant.angles(t))
-    constant_gait = "constant gait"
-    plans = [(constant_gait, n, DURATION, constant) for n in DRAWS]
-    plans += [(constant_gait, DRAWS[-1], d, constant) for d in DURATIONS if d != DURATION]
-    plans += [("log of leg angles, 100 Hz, every step", DRAWS[-1], DURATION, log)]
+    tripod = gait()
+    tetrapod = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
+    plans = [("tripod", n, DURATION, tripod) for n in DRAWS]
+    plans += [("tripod", DRAWS[-1], d, tripod) for d in DURATIONS if d != DURATION]
+    plans += [("tripod, log of leg angles, 100 Hz", DRAWS[-1], DURATION, logged(tripod))]
+    plans += [("tetrapod", DRAWS[-1], DURATION, tetrapod)]
+    plans += [("tetrapod, log of leg angles, 100 Hz", DRAWS[-1], DURATION, logged(tetrapod))]
     head = (
         "ensemble, 2 threads, steps of 5 ms", "draws", "walk (s)", "tables (s)", "walks (s)",
         "both (s)", "processor (s)", "simulated s per wall s",

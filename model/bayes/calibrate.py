@@ -189,7 +189,7 @@ def _true_radii(
     settings: SamplerSettings,
     watcher: Watcher,
 ) -> tuple[SlipSamples, RigErrors, RunOut | None]:
-    """Correct slip for the run-out of discs whose angles are recorded, if that predicts better.
+    """Correct slip for the run-out of discs whose angles are recorded, if it is `RunOut.used`.
 
     Returns the samples, what of the rig's errors remains, and the run-out, None if nothing tells
     it. Raises `FitStopped` if a stop is requested.

@@ -62,8 +62,8 @@ def weighted_posterior(
 ) -> tuple[Draws, Convergence]:
     """Make draws of equal weight in place of a sampler's, with their diagnostics.
 
-    The weighted draws are parted, and each part is resampled by its weights on its own, so that the
-    parts are as independent as ensembles of a sampler are.
+    The weighted draws are cut into equal parts, a remainder left out, and each part is resampled by
+    its weights on its own, so that the parts are as independent as ensembles of a sampler are.
 
     Args:
         posterior: The posterior.

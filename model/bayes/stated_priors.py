@@ -144,6 +144,7 @@ def with_stated(
         DomainError: A parameter has a prior of its own and one of the earlier posterior. Or fewer
             than `FEWEST_DRAWS` of the earlier posterior's draws lie inside the default priors'
             support, or over 1 % outside.
+        ValueError: The earlier posterior has draws of no free parameter (raised by NumPy).
     """
     changed = {**priors, **{k: v for k, v in stated.single.items() if k in priors}}
     earlier = stated.earlier

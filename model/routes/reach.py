@@ -108,8 +108,10 @@ def stop_turn_walk(
 def curve(goal: Goal, stride: Stride, stepping: Stepping, around: Surroundings) -> Fitted | None:
     """Plan to walk to a goal in a curve: one arc, or two where a heading is asked for.
 
-    Where arcs would be more than twice as long as the straight way, as to a goal behind, the curve
-    has a straight, before and behind it arcs about the inner legs.
+    Where arcs would be more than `MOST_DETOUR` times as long as the straight way, as to a goal
+    behind, or tighter than `stride.arm`, an arc about the inner legs and a straight are walked
+    instead, and a second such arc where a heading is asked for. A place within the first circle,
+    which these cannot reach, is walked to in one tighter arc.
 
     Args:
         goal: Where to end.

@@ -167,7 +167,7 @@ def _around_draws(
     width: float,
     rng: np.random.Generator,
 ) -> list[_Bumps]:
-    """Return narrower proposals around some draws, chosen by weight, to follow a kink.
+    """Return narrower proposals around up to `CENTRES` draws, chosen by weight, to follow a kink.
 
     Args:
         modes: Gaussian of each case, which gives the shape of its proposals.

@@ -113,7 +113,8 @@ def _require_private_network(address: str) -> None:
     """Raise `SettingsError` for an unencrypted scheduler beyond this machine and private networks.
 
     Whoever can speak to a scheduler can run any program on its workers, and who answers in its
-    place can run any on this machine: results are pickles.
+    place can run any on this machine: results are pickles. Names are resolved; OSError if that
+    fails.
     """
     found = _ADDRESS.fullmatch(address)
     if found is None or found[1] == "tls":

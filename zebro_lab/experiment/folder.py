@@ -144,6 +144,9 @@ class ExperimentFolder:
         Args:
             verdict: Verdict on the point; None where the run was aborted.
             reason: `completed`, or why the run ended.
+
+        Raises:
+            SinkFailed: The queue is full; in simulated time also if writing failed.
         """
         self._put(lambda: self._close_now(verdict, reason), wait=True)
 

@@ -65,7 +65,7 @@ class OpenedRig:
         """Return the setter of the normal force: the operator, real or simulated.
 
         Args:
-            setting: How the force is set: tolerance.
+            setting: Tolerance of a force that a real operator sets by hand.
             control: Mailbox that receives the operator's confirmation.
         """
         if self.twin is not None:

@@ -92,6 +92,8 @@ def render_load_cell(check: GainCheck) -> str:
 def in_words(weighing: Weighing, check: GainCheck, written: Path | None) -> list[str]:
     """Return lines with the readings, the line through them, and the prior or where it is written.
 
+    A slope that differs from 1 by over two standard deviations is followed by what to correct.
+
     Args:
         weighing: The readings.
         check: The line through them.

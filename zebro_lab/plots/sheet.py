@@ -240,7 +240,9 @@ def photograph_axes(
 
 
 def tint(share: float) -> str:
-    """Return the colour of bands mixed with white, its share from 0 to 1; opaque, as in legends.
+    """Return the colour of bands mixed with white, as hex; opaque, so that legends show the same.
+
+    The share of the colour, not of the white, is from 0 to 1.
 
     >>> tint(0.0), tint(1.0) == BAND.lower()
     ('#ffffff', True)

@@ -270,8 +270,8 @@ def time_grid(
         titles: Title of each column, k of them.
         least: Least range of each panel's axis, shape (len(rows), k): what the solver leaves of a
             quantity that is zero is not blown up.
-        cut: Share of the values that lie beyond the limits at either end, and are marked there; of
-            the first row none does [-].
+        cut: Share of the values beyond the limits at either end, where they are marked; the first
+            row has no value beyond its limits [-].
         width: Width of the figure [inch].
         title: Title of the figure; "(simulated)" is appended.
     """

@@ -85,7 +85,7 @@ def program_text(
     Args:
         parts: The parts.
         stepping: Gait, times and angles that they have in common.
-        request: The same as asked for: names and times are written as they were given.
+        request: The options: gait and times are written as they were given there.
         about: Lines of a comment at its beginning.
     """
     document = tomlkit.document()

@@ -38,6 +38,8 @@ class Finding:
 def examine(data: Path) -> Iterator[Finding]:
     """Run every check of this machine and yield the findings.
 
+    If zebro-lab is not installed, its requirements are not known, and not checked.
+
     Args:
         data: Folder for recordings; need not exist.
     """

@@ -91,6 +91,7 @@ def knowledge_of(
         InsufficientData: No draw can be used.
     """
     draws = usable_draws(posterior, z, DRAWS)
+    # Coordinates are standard normal a priori, so that the information is the unit matrix.
     prior = np.broadcast_to(np.eye(draws.shape[1]), (len(draws), draws.shape[1], draws.shape[1]))
     now = prior + measured_information(posterior, draws)
     before = prior.copy() if alone else now

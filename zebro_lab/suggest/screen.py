@@ -62,7 +62,7 @@ def lines(suggested: Suggested) -> list[str]:
 
 
 def _named(row: Expected) -> str:
-    """Return the name of a row: target and part, unless the part's name says it all."""
+    """Return the name of a row: target and part; the part alone of a parameter or a force."""
     return row.part if row.part == row.target or _is_force(row) else f"{row.target} {row.part}"
 
 

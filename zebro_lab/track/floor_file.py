@@ -29,7 +29,7 @@ def read_floor_file(file: Path) -> FloorMap:
         NotFound: The file does not exist.
         SettingsError: The file is not TOML, has no marker and no point, or holds an unknown key or
             an impossible value. Fewer than four points without a marker, from which no camera's
-                pose can be computed, raise only when a photograph is located.
+            pose can be computed, raise only when a photograph is located.
     """
     table = read_settings(file, advice="`zebro-lab camera kit` starts one")
     if "focal" in table:

@@ -152,7 +152,7 @@ class TrackInputs:
         return self.manifest.source
 
     def require_complete(self) -> None:
-        """Raise if an input that tracking needs is missing.
+        """Check that the robot can be found in photographs, by its marker or its annotated top.
 
         Raises:
             SettingsError: The robot carries no marker and its top is not annotated.

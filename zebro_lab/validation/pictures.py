@@ -104,7 +104,7 @@ def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos, form: Pic
 
 
 def _instants(run: JudgedRun, photos: TrackedPhotos, time_offset: float) -> NDArray[np.intp]:
-    """Return indices of at most `SHOTS` photographs, evenly spread over the scored poses."""
+    """Return indices of at most `SHOTS` photographs, spread from first to last scored pose."""
     at = photos.t + time_offset
     scored = np.flatnonzero((at >= run.track.t[0] - 1e-6) & (at <= run.track.t[-1] + 1e-6))
     return np.unique(scored[np.linspace(0, len(scored) - 1, SHOTS).round().astype(int)])

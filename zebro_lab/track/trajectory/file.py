@@ -105,8 +105,8 @@ def read_trajectory(
 
     Raises:
         NotFound: A file is missing, or the package that reads a ROS log.
-        DataError: The file is damaged or its layout is not known; a stamp is repeated with another
-            pose, or earlier than the one before.
+        DataError: The file is damaged or its layout is not known; a stamp is earlier than the one
+            before; or rows that repeat a stamp with another pose are more than one plus 1 % of all.
         SettingsError: An option does not fit the file.
     """
     mapping = mapping or Columns(MAPPED_UNITS)

@@ -63,6 +63,8 @@ _UNIT: Final = re.compile(r"[\[(][^\])]*[\])]\s*$")
 def named_columns(headers: Sequence[str]) -> Mapping[str, str]:
     """Return the header of each column of a trajectory by canonical name; the first if several.
 
+    Headers that `_HEADERS` does not recognise are left out; letter case and units do not matter.
+
     >>> named_columns(["#timestamp [ns]", "p_RS_R_x [m]"])["t_s"]
     '#timestamp [ns]'
     """

@@ -25,7 +25,10 @@ def print_compared(console: Console, done: Compared, out: Path) -> None:
 
 
 def compared_document(done: Compared) -> dict[str, object]:
-    """Return names, notes, and medians and 90 % intervals of both and of their difference."""
+    """Return names, notes, and medians and 90 % intervals of both and of their difference.
+
+    `place`, where a given curve lies in a calibration's band, is there only for such a curve.
+    """
     compared, keys = done.comparison, ("median", "low", "high")
     quantities = [
         {

@@ -130,8 +130,8 @@ def regressed_target(
         n_draws: Number of draws m around which the target is asked for.
 
     Raises:
-        InsufficientData: There are no more draws than coordinates that differ, or a quantity is
-            the same in every draw.
+        InsufficientData: There are fewer than two draws more than coordinates that differ, or a
+            quantity is the same in every draw.
     """
     spread = drawn.std(axis=0)
     differ = spread > 0

@@ -136,7 +136,7 @@ def roll_rate(machine, manner, legs, sides, roll):
         roll: Roll [rad].
 
     Returns:
-        Roll rate [rad/s].
+        Roll rate, NaN where no leg of a side is on the ground [rad/s].
     """
     inner = side_mean(legs.height_rate, sides, manner.inner)
     outer = side_mean(legs.height_rate, sides, 1 - manner.inner)

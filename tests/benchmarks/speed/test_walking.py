@@ -17,4 +17,5 @@ def test_every_plan_of_an_ensemble_is_a_row(monkeypatch, rows):
     for name, value in few.items():
         monkeypatch.setattr(walking, name, value)
     walking.time_ensembles()
-    assert [row[1:3] for row in rows()] == [["2", "4"], ["4", "4"], ["4", "6"], ["4", "4"]]
+    plans = [("2", "4"), ("4", "4"), ("4", "6"), *[("4", "4")] * 3]
+    assert [tuple(row[1:3]) for row in rows()] == plans

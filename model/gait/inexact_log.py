@@ -215,7 +215,10 @@ class InexactLog:
 
 
 def _first_samples(samples: Samples, half: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return least and largest index of each line's first sample, then their number, (k + 1,).
+    """Return the least and the largest index of each line's first sample, shape (k + 1,) each.
+
+    The last entry of each is the number of samples. `half` is the largest distance of a sample from
+    its line [rad].
 
     Splitting from the last sample backwards gives as few lines, each as early as it can begin. By
     rounding it may give one more, where a line barely passes: then both are the latest.
@@ -265,12 +268,13 @@ def _likely_lines(
 def _own_samples(
     samples: Samples, earliest: NDArray[np.intp], latest: NDArray[np.intp], half: float
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return first and last index, plus one, of each line's own samples, shape (k,) each.
+    """Return begin and end (exclusive) of each line's own samples, shape (k,) each.
 
-    A corner lies anywhere between the earliest and the latest that a line may begin: the middle
-    is taken, and up to `NEAR` samples on either side are left out, since they may be of either
-    line. None is left out where fewer than two would remain; where no line passes them, it is the
-    longest group.
+    A corner lies anywhere between the earliest and the latest sample with which a line may begin:
+    the middle is taken, and up to `NEAR` samples on either side are left out, since they may be of
+    either line. None is left out where fewer than two would remain. If still fewer than two remain,
+    or no line passes them within `half` [rad], they are those from this line's latest beginning to
+    the next line's.
     """
     corner = (earliest + latest) // 2
     begin = np.minimum(corner + NEAR, latest)[:-1]

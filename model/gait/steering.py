@@ -147,7 +147,7 @@ def solve_outer_touchdown(
 
     with the ideal lift-off angle of `ideal_liftoff` on both sides. The left side falls strictly in
     its argument, from the limit in `largest_steering_factor` to zero where the hip is highest, so
-    there is one root, found by bisection.
+    there is one root [rad], found by bisection.
 
     Args:
         inner_touchdown: Touchdown angle of the inner legs [rad].

@@ -97,7 +97,7 @@ class DumpLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; there are no numbers, so that losses are not counted.
+        """Counters of the stream so far; dumps have no sequence number: losses are not counted.
 
         Dumps with impossible counts are refused.
         """

@@ -41,7 +41,7 @@ def shortest_distinct(paths: Sequence[Path]) -> list[str]:
 
 
 def is_bag(path: Path) -> bool:
-    """Return whether a path is a bag by its name: .db3, .bag, or the folder of a bag.
+    """Return whether a path is a ROS bag: a name in .db3 or .bag, or the folder of a bag.
 
     Such a folder holds metadata.yaml, or files .db3 where that is missing.
     """

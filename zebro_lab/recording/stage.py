@@ -279,7 +279,14 @@ def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> Non
 
 
 def _played(path: Path) -> tuple[SampledReference, tuple[str, ...]]:
-    """Read the leg angles to play, from time 0, with notes on what is suspected of them."""
+    """Read a leg log to play: angles as they are [rad], times shifted to begin at 0 [s]; and notes.
+
+    Signs and offsets of a `robot.toml` are not applied. The notes say what is suspected of the log.
+
+    Raises:
+        NotFound: The log does not exist.
+        DataError: It cannot be read.
+    """
     from zebro_lab.runs.legs import read_leg_log  # pandas takes half a second
 
     reference = read_leg_log(path).reference

@@ -136,7 +136,7 @@ class Sources:
 
     @property
     def hold_more_than_tracks(self) -> bool:
-        """Whether any run, or folder of results, is more than a track."""
+        """Whether any run holds more than an imported path, see `has_track_alone`."""
         return not all(run.has_track_alone for run in self.runs)
 
     @property

@@ -206,7 +206,7 @@ class RawTable:
             t: Times by row, shape (n,) [s].
 
         Raises:
-            DataError: A time is not later than the one before, or NaN.
+            DataError: A time is not later than the one before; NaN is never later.
         """
         later = np.diff(t) > 0
         if later.all():

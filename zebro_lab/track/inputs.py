@@ -31,7 +31,7 @@ def tracked_robot(described: RobotFile, *, prior: BodyPrior) -> MarkedRobot:
     """Return the robot with its marker from `robot.toml`.
 
     In `robot.toml` the marker's x axis is the print's upward direction: a print whose top points
-    ahead has yaw 0.
+    ahead has yaw 0. The yaw of the result is that of the print's rightward direction, pi/2 less.
 
     Args:
         described: Content of `robot.toml`.

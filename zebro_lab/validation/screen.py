@@ -89,7 +89,11 @@ def _walks(validated: Validated) -> list[str | Table]:
 
 
 def _table(run: JudgedRun) -> Table:
-    """Format the errors of a walk's prediction and baselines as a table."""
+    """Format the errors of a walk's prediction and baselines as a table.
+
+    ATE, along, across and yaw are root mean squares over the poses; the length is the track's. The
+    last row has the radius of the track.
+    """
     length = run.rows[0].errors.length
     title = f"{run.name}: {run.rows[0].errors.poses} poses, {length:.3f} m"
     numbers = (

@@ -103,8 +103,8 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     """Predict the path from measured leg angles and write the walk folder.
 
     The path has the log's time base. The robot is that of the request, else the `robot.toml` of the
-    run, else the thesis's robot; for the exact angles of a walk folder, without its leg signs and
-    offsets.
+    run, else the thesis's robot; for the exact angles of a walk folder, with leg signs of 1 and
+    offsets of 0.
 
     Args:
         request: Leg log, model, band and output folder.

@@ -189,7 +189,10 @@ def _per_slip(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
 
 
 def whiten(blocks: SlipBlocks, columns: Array, factors: list[Array]) -> Array:
-    """Solve L x = c for each run's part of each column c, shape (n, m), by its factor L."""
+    """Solve L x = c for each run's part of each column c, by the run's factor L.
+
+    Columns and result have shape (n, m); their n rows are the blocks, run by run.
+    """
     parts = np.split(columns, blocks.run_starts()[1:-1])
     return np.concatenate(
         [solve_triangular(L, part, lower=True) for L, part in zip(factors, parts, strict=True)]

@@ -85,7 +85,11 @@ def _pose(kind: str, content: Any) -> tuple[float, ...]:
 
 
 def _planar_covariance(found: TopicRows, plane: str) -> dict[str, Array]:
-    """Return `cov_xx` to `cov_yawyaw` in a plane; empty if messages have none, or only zeros."""
+    """Return the covariance of position in a plane and heading about its normal, by column name.
+
+    The columns are `cov_xx` to `cov_yawyaw`, shape (n,) each [m², m rad, rad²]. Empty if messages
+    have no covariance, only zeros, or any number that is not finite.
+    """
     if _POSES[found.type] != "pose.pose":
         return {}
     covariance = np.array([each.pose.covariance for each in found.contents], dtype=float)

@@ -30,12 +30,12 @@ def delete_stale_loops(package: Path) -> None:
             digest.update(str(path.relative_to(package)).encode() + source)
     known = package / "__pycache__" / "compiled_sources.sha256"
     with suppress(OSError):  # a folder that cannot be written: numba's cache is elsewhere
-        if known.is_file() and known.read_text() == digest.hexdigest():
+        if known.is_file() and known.read_text(encoding="utf-8") == digest.hexdigest():
             return
         for stored in package.rglob("*.nb[ic]"):
             stored.unlink(missing_ok=True)
         known.parent.mkdir(exist_ok=True)
-        known.write_text(digest.hexdigest())
+        known.write_text(digest.hexdigest(), encoding="utf-8")
 
 
 delete_stale_loops(Path(__file__).parent)

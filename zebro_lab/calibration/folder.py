@@ -98,10 +98,12 @@ def write_tables(
     """
     from model.bayes.law_scores import LawScores
 
-    (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs, priors or {}, lateral or {}))
-    (folder / "summary.csv").write_text(summary_csv(calibration))
+    (folder / SLIP_TOML).write_text(
+        _slip_toml(calibration, inputs, priors or {}, lateral or {}), encoding="utf-8"
+    )
+    (folder / "summary.csv").write_text(summary_csv(calibration), encoding="utf-8")
     if isinstance(calibration.comparison, LawScores):
-        (folder / LAWS_CSV).write_text(laws_csv(calibration.comparison))
+        (folder / LAWS_CSV).write_text(laws_csv(calibration.comparison), encoding="utf-8")
     posterior_tree(calibration).to_netcdf(folder / POSTERIOR, engine="h5netcdf")
 
 

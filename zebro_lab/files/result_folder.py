@@ -126,7 +126,7 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
             "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
             "software": software(),
         }
-        (draft / MANIFEST).write_text(json_text(document) + "\n")
+        (draft / MANIFEST).write_text(json_text(document) + "\n", encoding="utf-8")
         sync_files(draft)
         written = [path.name for path in draft.iterdir()]
 

@@ -120,13 +120,15 @@ def check_can(net: Path) -> Iterator[Finding]:
         net: Folder of the system's network interfaces, `/sys/class/net`.
     """
     types = sorted(net.glob("*/type"))
-    found = [file.parent for file in types if file.read_text().strip() == "280"]  # ARPHRD_CAN
+    found = [
+        file.parent for file in types if file.read_text(encoding="utf-8").strip() == "280"
+    ]  # ARPHRD_CAN
     if not found:
         text = "no CAN interface found; a serial adapter (PROFILE@slcan:/dev/tty…) needs none"
         yield Finding("note", "CAN", text)
     for place in found:
         what = f"CAN {place.name}"
-        if int((place / "flags").read_text(), 16) & 1:
+        if int((place / "flags").read_text(encoding="utf-8"), 16) & 1:
             yield Finding("ok", what, f"is up; its address is PROFILE@socketcan:{place.name}")
         else:
             command = f"sudo ip link set {place.name} up type can bitrate 1000000"

@@ -67,7 +67,7 @@ def track_folder(
     with result_folder(out, TRACKED, content=content) as draft:
         table = pd.DataFrame(dict(columns))
         table.to_csv(draft / TRACK_CSV, index=False, float_format=_DIGITS, lineterminator="\n")
-        (draft / TRACK_TUM).write_text("\n".join(tum) + "\n")
+        (draft / TRACK_TUM).write_text("\n".join(tum) + "\n", encoding="utf-8")
         yield draft
 
 

@@ -184,9 +184,13 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
     ) as draft:
         write_joint(draft, np.asarray(found.t, dtype=float), found.joint, found.shared.slots)
         heading = f"The floor of {request.floor.name}, refined with the photographs."
-        (draft / FLOOR_FILE).write_text(render_floor_file(seen.fit.floor, heading=heading))
+        (draft / FLOOR_FILE).write_text(
+            render_floor_file(seen.fit.floor, heading=heading), encoding="utf-8"
+        )
         if request.annotations is not None:
-            (draft / ANNOTATIONS_FILE).write_text(render_annotations(inputs.annotations))
+            (draft / ANNOTATIONS_FILE).write_text(
+                render_annotations(inputs.annotations), encoding="utf-8"
+            )
         _draw(draft, result, sequence, request.form)
 
 

@@ -188,9 +188,9 @@ def _write_tables(draft: Path, runs: Sequence[JudgedRun]) -> None:
         for row in run.rows:
             columns = error_columns(row.path.at(run.track.t), run.track)
             parts.append(pd.DataFrame({"run": run.name, "model": row.name, **columns}))
-        (draft / f"{run.name}.track.tum").write_text(tum_lines(run.track))
+        (draft / f"{run.name}.track.tum").write_text(tum_lines(run.track), encoding="utf-8")
         matched = run.rows[0].path.at(run.track.t)
-        (draft / f"{run.name}.predicted.tum").write_text(tum_lines(matched))
+        (draft / f"{run.name}.predicted.tum").write_text(tum_lines(matched), encoding="utf-8")
     to_csv(pd.concat(parts), draft / ERRORS)
 
 

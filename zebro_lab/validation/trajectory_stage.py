@@ -121,6 +121,6 @@ def _write(request: ValidateRequest, judged: JudgedPair, settings: dict[str, obj
             pd.DataFrame([{"in": where, **row} for where, row in metrics.items()]), draft / METRICS
         )
         to_csv(poses, draft / ERRORS)
-        (draft / REFERENCE).write_text(tum_lines(judged.tracked))
-        (draft / ESTIMATE).write_text(tum_lines(judged.estimated))
+        (draft / REFERENCE).write_text(tum_lines(judged.tracked), encoding="utf-8")
+        (draft / ESTIMATE).write_text(tum_lines(judged.estimated), encoding="utf-8")
         draw_pair(draft / f"{PICTURE}.{request.form}", judged)

@@ -241,7 +241,7 @@ def write_kit(out: Path, *, paper: str = "a4", board: str = "kit") -> tuple[Path
     if not out.is_dir():
         with atomic_folder(out) as draft:
             (draft / KIT_FILE).write_bytes(drawn.getvalue())
-            (draft / FLOOR_FILE).write_text(floor)
+            (draft / FLOOR_FILE).write_text(floor, encoding="utf-8")
     else:
         _require_same(out / KIT_FILE, drawn.getvalue())
         atomic_write_bytes(out / KIT_FILE, drawn.getvalue())

@@ -374,7 +374,7 @@ def test_sides_are_apart_where_left_out_runs_say_so(apart, chosen):
         choice = fits[-1].block_choice
     assert compare(["together", "apart"], fits).chosen == chosen
     laplace = fits[1].laplace
-    d_K, d_mu = fits[1].posterior.values(laplace.mode[None])[0, 3:5]
-    sd = np.sqrt(np.diag(laplace.covariance))[3:5] * [0.2, 0.1]
+    d_K, d_mu = fits[1].posterior.values(laplace.mode[None])[0, 2:4]
+    sd = np.sqrt(np.diag(laplace.covariance))[2:4] * [0.2, 0.1]
     assert abs(d_K - apart[0]) < 3 * sd[0]
     assert abs(d_mu - apart[1]) < 3 * sd[1]

@@ -37,7 +37,7 @@ from support.simulated_sweep import simulate_sweep
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(5400)]
 
-REPLICATES, OF_FORGETFUL = 200, 80
+REPLICATES = 200
 PLAN = SweepPlan(
     slips=tuple(np.linspace(-0.3, 1.0, 10).tolist()), loads=(3.0, 8.0, 13.0), duration=0.4
 )
@@ -86,12 +86,12 @@ def ranks(index: int, fixed: dict[str, float]) -> dict[str, int] | None:
     return {name: int(n) for name, n in zip(names, below, strict=True) if name not in fitted.fixed}
 
 
-def p_values(fixed: dict[str, float], replicates: int) -> dict[str, tuple[float, float]]:
+def p_values(fixed: dict[str, float]) -> dict[str, tuple[float, float]]:
     """Return p of chi-square and Kolmogorov-Smirnov of the ranks of each parameter, and print."""
     with ProcessPoolExecutor(os.cpu_count(), get_context("spawn")) as pool:
-        found = [each for each in pool.map(partial(ranks, fixed=fixed), range(replicates)) if each]
-    say(f"\n\n{len(found)} of {replicates} fits ranked; p of chi-square and Kolmogorov-Smirnov\n")
-    assert len(found) >= 0.9 * replicates
+        found = [each for each in pool.map(partial(ranks, fixed=fixed), range(REPLICATES)) if each]
+    say(f"\n\n{len(found)} of {REPLICATES} fits ranked; p of chi-square and Kolmogorov-Smirnov\n")
+    assert len(found) >= 0.9 * REPLICATES
     rng, tested = np.random.default_rng(0), {}
     for name in found[0]:
         column = np.array([each[name] for each in found])
@@ -107,12 +107,12 @@ def say(line: str) -> None:
 
 
 def test_ranks_of_the_full_data_model_are_uniform():
-    found = p_values({}, REPLICATES)
+    found = p_values({})
     limit = 0.01 / (2 * len(found))  # 1 % for all tests together
     assert {name: p for name, p in found.items() if min(p) < limit} == {}
 
 
 def test_a_model_without_memory_and_offsets_is_found_out():
-    found = p_values(FORGETFUL, OF_FORGETFUL)
+    found = p_values(FORGETFUL)
     assert min(chi_square for chi_square, _ in found.values()) < 1e-6
     assert min(uniform for _, uniform in found.values()) < 1e-6

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Where the tests find reference data, and what every test shares."""
 
+import gc
 import os
 import signal
 from pathlib import Path
@@ -50,6 +51,12 @@ def pytest_collection_modifyitems(items):
             item.add_marker("reference")
         if "reference" in item.keywords and not HAS_REFERENCE:
             item.add_marker(missing)
+
+
+def pytest_collection_finish():
+    """Keep the garbage collector from looking through the thousands of tests again and again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

@@ -81,7 +81,7 @@ class Kind:
 
 
 KINDS = (
-    Kind("marker, steady", 0.5, 0.2, 1.0),
+    Kind("marker, steady", 0.5, 0.2, 1.0, poses=1000),
     Kind("marker, 5 mm bounce, 2 degrees tilt", 4.0, 0.3, 0.99, height_sd=5e-3,
          tilt_sd=np.radians(2), poses=1000),  # a few of them err by far the most
     Kind("marker, harsh", 1.0, 0.3, 0.9, conditions=HARSH),

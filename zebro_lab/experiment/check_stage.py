@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+from scipy.stats import norm
 
 from model.arrays import Array
 from model.slip.curve import SlipCurve
@@ -20,8 +21,8 @@ STEP: Final = 1e-4
 """Step of central differences relative to a parameter, whose size counts as `STEP` at least [-]."""
 BATCHES: Final = 8
 """Number of consecutive parts of a run whose means estimate the noise of the run's mean."""
-SUSPICIOUS: Final = 3.0
-"""Deviation that counts as drift [standard deviations]."""
+FALSE_ALARMS: Final = 0.01
+"""Probability that any run of a check is said to have drifted when none has [-]."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class CheckedRun:
         expected: Mean traction of the calibrated curve at the run's slip ratios and loads [N].
         sd: Standard deviation of traction minus expected, from fit, noise and zero offset; NaN for
             a run of fewer than `BATCHES` samples [N].
+        limit: Deviation beyond which the run counts as drifted [standard deviations].
     """
 
     name: str
@@ -44,6 +46,7 @@ class CheckedRun:
     traction: float
     expected: float
     sd: float
+    limit: float
 
     @property
     def deviation(self) -> float:
@@ -52,13 +55,13 @@ class CheckedRun:
 
     @property
     def verdict(self) -> str:
-        """The text "DRIFTED" if the run deviates by more than `SUSPICIOUS`, else empty.
+        """The text "DRIFTED" if the run deviates by more than `limit`, else empty.
 
         "NOT TESTABLE" with its reason if the deviation is NaN, for too few samples.
         """
         if np.isnan(self.deviation):
             return f"NOT TESTABLE: fewer than {BATCHES} samples"
-        return "DRIFTED" if abs(self.deviation) > SUSPICIOUS else ""
+        return "DRIFTED" if abs(self.deviation) > self.limit else ""
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,9 @@ class DriftCheck:
 def check_runs(data: Sequence[Path], calibration: Path, *, zero_sd: float = 0.1) -> DriftCheck:
     """Compare the mean traction of each run with the calibrated slip curve.
 
+    The limit of the n runs is the quantile of a standard normal that any of them exceeds by chance
+    with probability `FALSE_ALARMS` (Bonferroni): 2.6 for one run, 3.6 for thirty.
+
     Args:
         data: Run folders or tables, or folders of them; excluded runs and copies are left out.
         calibration: `slip.toml` of the calibration, or its folder.
@@ -94,13 +100,17 @@ def check_runs(data: Sequence[Path], calibration: Path, *, zero_sd: float = 0.1)
     for note in read.repeated:
         _LOG.warning("%s", note)
     samples = read.samples
+    n = len(samples.run_names)
+    limit = float(norm.isf(FALSE_ALARMS / (2 * n)))
     runs = tuple(
-        _checked(samples, curve, index, zero_sd) for index in range(len(samples.run_names))
+        _checked(samples, curve, index, zero_sd=zero_sd, limit=limit) for index in range(n)
     )
     return DriftCheck(runs, (read.source, calibrated.source))
 
 
-def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float) -> CheckedRun:
+def _checked(
+    samples: SlipSamples, curve: SlipCurve, index: int, *, zero_sd: float, limit: float
+) -> CheckedRun:
     """Compare the mean traction of one run with that of the curve at its slips and loads.
 
     Its variance adds that of the curve's parameters, by the derivative of the mean, that of the
@@ -124,6 +134,7 @@ def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float)
         traction=float(traction.mean()),
         expected=float(expected.mean()),
         sd=float(np.sqrt(fitted + noise**2 + zero_sd**2)),
+        limit=limit,
     )
 
 

@@ -238,7 +238,7 @@ def check(
     output: Output = TEXT,
 ) -> None:
     """Compare the traction of new runs with a calibration to detect drift of the rig."""
-    from zebro_lab.experiment.check_stage import SUSPICIOUS, check_runs
+    from zebro_lab.experiment.check_stage import check_runs
 
     done = check_runs(data, slip)
     runs = done.runs
@@ -250,7 +250,7 @@ def check(
         )
     drifted = sum(found.verdict == "DRIFTED" for found in runs)
     output.say(
-        f"{drifted} of {len(runs)} runs deviate from the calibration by over {SUSPICIOUS:g} sd"
+        f"{drifted} of {len(runs)} runs deviate from the calibration by over {runs[0].limit:.1f} sd"
     )
     code = REFUSED if any(found.verdict for found in runs) else 0
     simulated = any(is_simulated(source) for source in done.sources)

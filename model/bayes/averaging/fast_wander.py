@@ -74,11 +74,12 @@ def fast_wander(samples: SlipSamples, residual: Array, slope: Array) -> FastWand
             steep = float(slope[first:last].mean()) if last > first else 0.0
             if last - first < 4 * FAR or steep == 0 or own == 0:
                 continue
-            error = residual[first:last] / steep
+            error = residual[first:last]
             scatter = 0.5 * float(np.var(np.diff(error)))
-            if scatter > 0:
-                noise.append(_noise_variance(samples.slip[first:last], error))
-                weight.append((last - first) / scatter)
+            told = (last - first) * steep**2 / scatter if scatter > 0 else 0.0
+            if told > 0:  # not of a curve so flat that the square of its slope is none
+                noise.append(_noise_variance(samples.slip[first:last], error) / steep)
+                weight.append(told)
                 typical.append(float(own))
     if len(noise) < 3:
         return None
@@ -90,11 +91,11 @@ def fast_wander(samples: SlipSamples, residual: Array, slope: Array) -> FastWand
 
 
 def _noise_variance(slip: Array, error: Array) -> float:
-    """Estimate the variance of slip that force does not follow, in one piece of a run [-].
+    """Estimate the variance of slip that force does not follow, times the slope of the curve [N].
 
     Args:
-        slip: Measured slip, shape (n,) [-].
-        error: Residual of the force over the slope of the curve, shape (n,) [-].
+        slip: Measured slip of one piece of a run, shape (n,) [-].
+        error: Residual of the force there, shape (n,) [N].
     """
     x, y = slip - slip.mean(), error - error.mean()
     n = len(x)

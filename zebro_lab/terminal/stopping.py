@@ -90,12 +90,16 @@ def _restore(numbers: list[signal.Signals]) -> None:
 
 
 def _raise_again(unraisable: Any) -> None:
-    """Send the signal again where a finaliser or a callback of C swallowed its exception."""
+    """Send the signal again where a finaliser or a callback of C swallowed its exception.
+
+    Other errors of finalisers are shown until a stop is asked for; then they are of objects that
+    the stop left half made.
+    """
     if isinstance(unraisable.exc_value, StoppedBySignal):
         again = threading.Timer(0.01, os.kill, (os.getpid(), unraisable.exc_value.number))
         again.daemon = True
         again.start()
-    else:
+    elif not _asked:
         sys.__unraisablehook__(unraisable)
 
 

@@ -49,6 +49,13 @@ def test_a_process_that_catches_the_exception_ends_a_little_later(swallow):
     assert process.stderr == "stopped by SIGTERM; nothing was left half-written\n"
 
 
+@pytest.mark.parametrize("asked", [False, True])
+def test_finalisers_of_what_a_stop_left_half_made_say_nothing(asked):
+    before = "class Half:\n    def __del__(self): self.never_made"
+    process = ended("half = Half()\n    " + (RAISE["SIGTERM"] if asked else "del half"), before)
+    assert ("AttributeError" in process.stderr) == (not asked)
+
+
 def test_a_process_that_catches_the_exception_is_stopped_again_and_removes_its_drafts():
     process = ended(f"""
     try: {RAISE["SIGTERM"]}

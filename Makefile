@@ -49,7 +49,7 @@ demo: $(STAMP) ## the whole loop on bundled, simulated data: rig and photographs
 	@echo "open $(DEMO)/report.html in a browser"
 
 # Three processes for two cores: a tenth of the tests wait for simulated devices.
-test: $(STAMP) ## the tests, some six minutes on two cores
+test: $(STAMP) ## the tests, some five minutes on two cores
 	$(BIN)/python -m pytest -n 3 --dist worksteal -m "not long"
 
 test-reference: $(STAMP) ## the tests that need reference data (ZEBRO_LAB_SHARED)

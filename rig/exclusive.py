@@ -1,19 +1,26 @@
 # SPDX-License-Identifier: MIT
-"""Lock files (flock) for exclusive use of a device or folder among all programs of a machine.
+"""Locks for exclusive use of a device or folder among all programs of a machine.
 
-The kernel releases the lock when its process ends, also after a crash. A device's lock can be taken
-several times inside one process, because two drivers may share a bus; the last release frees it.
-Windows has no such locks: there only the exclusive opening of serial ports protects a device.
+The kernel keeps a lock, and releases it when its process ends, also after a crash. On Linux the
+lock is an abstract Unix socket with a name made of the device's: no file that may be deleted, one
+for all users, temporary folders and mount namespaces; only another network namespace has its own.
+Elsewhere it is a file at a fixed place. A folder is also locked itself (flock), in every namespace.
+
+A device's lock can be taken several times inside one process, because two drivers may share a bus;
+the last release frees it. Windows has no such locks: there only the exclusive opening of serial
+ports protects a device.
 """
 
+import contextlib
+import errno
 import hashlib
 import os
 import shlex
+import socket
+import struct
 import sys
-import tempfile
 import threading
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
@@ -21,36 +28,46 @@ from model.file_lock import try_lock
 from rig.errors import InUse
 
 LONGEST: Final = 300
-"""Longest description of an owner that is stored and shown [characters]."""
+"""Longest command of an owner that is shown [characters]."""
+_NAMED: Final = sys.platform == "linux"
+"""Whether the system has abstract Unix sockets."""
+_LOCK_FILES: Final = Path("/tmp")  # noqa: S108 - one place for all programs, whatever TMPDIR is
+"""Folder of the lock files of devices where there are no abstract sockets."""
 _PSEUDO_TERMINALS = "/dev/pts"
 """Folder of the devices of pseudo-terminals."""
+_MOST_ASKING: Final = 4096
+"""Number of programs that may ask for the owner of a lock, which answers none of them."""
 
 
 @dataclass
 class _Held:
-    """A lock that this process holds: handle of the open lock file, and number of its holders."""
+    """A lock that this process holds: what keeps it until closed, and number of its holders."""
 
-    handle: int
+    lock: contextlib.ExitStack
     count: int = 1
 
 
 _HELD: Final[dict[str, _Held]] = {}
-"""The locks that this process holds, by the path of their file."""
+"""The locks that this process holds, by name."""
 _HELD_GUARD: Final = threading.Lock()
 
 
 class Exclusive:
-    """Lock file of a device or folder, held from `take` to `release`; a context manager.
+    """Lock of a device or folder, held from `take` to `release`; a context manager.
 
     Args:
-        file: The lock file; created when missing, and never removed.
+        name: Name of the lock, the same in all programs.
         what: Name of the device or folder, for the message.
+        file: Folder or file that is locked as well; created as a file when missing, never written.
         shared: Whether other `Exclusive` of this process can take the same lock as well.
     """
 
-    def __init__(self, file: Path, *, what: str, shared: bool = False) -> None:
-        self._file = Path(os.path.realpath(file))
+    def __init__(
+        self, name: str, *, what: str, file: Path | None = None, shared: bool = False
+    ) -> None:
+        self._name = name
         self._what = what
+        self._file = file
         self._shared = shared
         self._taken = False
 
@@ -58,18 +75,18 @@ class Exclusive:
         """Acquire the lock without waiting; a second call, or one on Windows, has no effect.
 
         Raises:
-            InUse: Another process holds the lock, or this one does and the lock is not shared; the
-                message describes the process.
-            OSError: The file cannot be created or opened.
+            InUse: Another process holds the lock, or this one does and the lock is not shared; on
+                Linux the message names the process and its command.
+            OSError: The socket or file cannot be created or opened.
         """
         if self._taken or os.name != "posix":
             return
         with _HELD_GUARD:
-            held = _HELD.get(str(self._file))
+            held = _HELD.get(self._name)
             if held is not None and self._shared:
                 held.count += 1
-            else:  # a process's second handle of a file is refused the lock like another's
-                _HELD[str(self._file)] = _Held(self._lock())
+            else:  # a process's second lock of a name is refused like another's
+                _HELD[self._name] = _Held(self._lock())
         self._taken = True
 
     def release(self) -> None:
@@ -81,11 +98,11 @@ class Exclusive:
             return
         self._taken = False
         with _HELD_GUARD:
-            held = _HELD[str(self._file)]
+            held = _HELD[self._name]
             held.count -= 1
             if held.count == 0:
-                del _HELD[str(self._file)]
-                os.close(held.handle)
+                del _HELD[self._name]
+                held.lock.close()
 
     def __enter__(self) -> "Exclusive":
         self.take()
@@ -94,24 +111,37 @@ class Exclusive:
     def __exit__(self, *_: object) -> None:
         self.release()
 
-    def _lock(self) -> int:
-        """Lock the file, describe this process in it, and return its handle, which stays open.
+    def _lock(self) -> contextlib.ExitStack:
+        """Acquire the lock and return what holds it until it is closed; raises as `take`."""
+        with contextlib.ExitStack() as held:
+            if _NAMED:
+                held.enter_context(self._listen())
+            if self._file is not None:
+                handle = _open(self._file)
+                held.callback(os.close, handle)
+                if not try_lock(handle):
+                    raise self._in_use("another program")
+            return held.pop_all()
 
-        Raises:
-            InUse: Another handle has the lock; the message describes its owner.
-            OSError: The file cannot be created or opened.
-        """
-        handle = _open(self._file)
-        if not try_lock(handle):
-            owner = _readable(os.pread(handle, 4 * LONGEST, 0))  # UTF-8: up to 4 bytes a character
-            os.close(handle)
-            raise InUse(
-                f"{self._what} is in use by {owner or 'another program'}; end that program first, "
-                "or use another device or folder"
-            )
-        os.ftruncate(handle, 0)
-        os.pwrite(handle, _owner().encode("utf-8", "backslashreplace"), 0)
-        return handle
+    def _listen(self) -> socket.socket:
+        """Listen at the abstract socket with the lock's name; raise InUse where another does."""
+        opened, place = socket.socket(socket.AF_UNIX), f"\0zebro-lab/{_hash(self._name)}"
+        try:
+            opened.bind(place)
+            opened.listen(_MOST_ASKING)
+        except OSError as error:
+            opened.close()
+            if error.errno != errno.EADDRINUSE:
+                raise
+            raise self._in_use(_owner(place)) from None
+        return opened
+
+    def _in_use(self, owner: str) -> InUse:
+        """Return the error that another program has the lock."""
+        return InUse(
+            f"{self._what} is in use by {owner}; end that program first, or use another device or "
+            "folder"
+        )
 
 
 def device_lock(name: str) -> Exclusive:
@@ -122,9 +152,22 @@ def device_lock(name: str) -> Exclusive:
             begins with its kind, such as `socketcan:can0` or `udp:192.168.1.1:49152`.
     """
     real = _device_path(name) if name.startswith("/") else name
-    return Exclusive(
-        _lock_folder() / hashlib.sha256(os.fsencode(real)).hexdigest()[:32], what=name, shared=True
-    )
+    file = None if _NAMED else _LOCK_FILES / f"zebro-lab-{_hash(real)}.lock"
+    return Exclusive(real, what=name, file=file, shared=True)
+
+
+def folder_lock(folder: Path, *, what: str) -> Exclusive:
+    """Return the lock of an existing folder, not yet taken; nothing is written into the folder.
+
+    Args:
+        folder: The folder, by any of its names.
+        what: What it is, for the message.
+
+    Raises:
+        OSError: There is no such folder.
+    """
+    found = folder.stat()
+    return Exclusive(f"folder:{found.st_dev}:{found.st_ino}", what=what, file=folder)
 
 
 def _device_path(path: str) -> str:
@@ -146,44 +189,38 @@ def _device_path(path: str) -> str:
     return str(place.parent.resolve() / place.name)
 
 
-def _lock_folder() -> Path:
-    """Return the folder of device locks, created for all users of the machine where missing."""
-    folder = Path(tempfile.gettempdir()) / "zebro-lab-locks"
-    try:
-        folder.mkdir()
-        folder.chmod(0o1777)
-    except FileExistsError:
-        pass
-    return folder
+def _hash(name: str) -> str:
+    """Return the hash of a lock's name, by which all programs find it."""
+    return hashlib.sha256(os.fsencode(name)).hexdigest()[:32]
 
 
-def _open(file: Path) -> int:
-    """Open a lock file, without O_CREAT where it exists, and return its handle.
+def _open(place: Path) -> int:
+    """Open a folder, or a file that is created when missing, for locking; return its handle.
 
-    Linux refuses O_CREAT for another user's file in world-writable folders
-    (`fs.protected_regular`).
+    It is opened for reading only, so that what a link or another name leads to is not changed.
     """
-    flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
-    try:
-        return os.open(file, flags)
-    except FileNotFoundError:
-        pass
-    try:
-        handle = os.open(file, flags | os.O_CREAT | os.O_EXCL, 0o666)
-    except FileExistsError:  # another program was quicker
-        return os.open(file, flags)
-    os.fchmod(handle, 0o666)  # whatever the umask: other users lock the same file
-    return handle
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
+    if place.is_dir():
+        return os.open(place, flags)
+    return os.open(place, flags | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
 
 
-def _owner() -> str:
-    """Describe this process: its id, its command and the time at which it took the lock."""
-    command = shlex.join([Path(sys.executable).name, *sys.argv])
-    since = datetime.now(UTC).isoformat(timespec="seconds")
-    return f"process {os.getpid()} ({command[:LONGEST]}) since {since}"
+def _owner(place: str) -> str:
+    """Describe the process that listens at an abstract socket, by its id and command.
+
+    `another program` where the system does not tell, as of another container.
+    """
+    with contextlib.suppress(OSError), socket.socket(socket.AF_UNIX) as asking:
+        asking.setblocking(False)  # an owner that was asked too often does not answer
+        asking.connect(place)
+        credentials = asking.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
+        process = struct.unpack("i", credentials[:4])[0]
+        words = Path(f"/proc/{process}/cmdline").read_bytes().decode("utf-8", "replace")
+        command = shlex.join(words.rstrip("\0").split("\0"))
+        return f"process {process} ({_readable(command)})"
+    return "another program"
 
 
-def _readable(content: bytes) -> str:
-    """Decode an owner's description; other than printable characters become `?`, the end is cut."""
-    text = content.decode("utf-8", "replace")
-    return "".join(character if character.isprintable() else "?" for character in text)[:LONGEST]
+def _readable(text: str) -> str:
+    """Cut a text to `LONGEST`; other than printable characters become `?`."""
+    return "".join(c if c.isprintable() else "?" for c in text[:LONGEST])

@@ -77,7 +77,7 @@ class CanLink:
             InUse: Another program has the bus; the message says which.
             LinkError: There is no such bus, its name is invalid, permission is missing, or the
                 interface's Python package is not installed.
-            OSError: The lock file cannot be created or opened.
+            OSError: The lock cannot be created.
         """
         if self._lock is not None:
             self._lock.take()

@@ -54,7 +54,7 @@ class SerialLink:
         Raises:
             InUse: Another program has the port; the message says which.
             LinkError: There is no such port, its name is invalid, or permission is missing.
-            OSError: The lock file cannot be created or opened.
+            OSError: The lock cannot be created.
         """
         self._lock.take()
         try:

@@ -58,7 +58,7 @@ class UdpLink:
         Raises:
             InUse: Another program has the lock; the message says which.
             LinkError: The host name is unknown, or there is no network.
-            OSError: The lock file or a socket cannot be created.
+            OSError: The lock or a socket cannot be created.
         """
         self._lock.take()
         opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

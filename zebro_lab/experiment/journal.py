@@ -25,6 +25,8 @@ JOURNAL_FILE: Final = "experiment.jsonl"
 RESERVE_FILE: Final = ".experiment.reserve"
 RESERVE: Final = 1 << 16
 """Reserved space that is freed when the disk is full, for the end of a run [bytes]."""
+_NO_LINK: Final = getattr(os, "O_NOFOLLOW", 0)
+"""Flag with which a symbolic link is not opened."""
 LARGEST: Final = 256 << 20
 """Largest size of a journal [bytes]."""
 EMERGENCY: Final = "emergency stop"
@@ -118,7 +120,7 @@ class JournalWriter:
 
     def _write(self, line: bytes) -> None:
         """Append a line and flush it to the disk; a line that was written in part is removed."""
-        handle = os.open(self._file, os.O_WRONLY | os.O_CREAT, 0o644)
+        handle = os.open(self._file, os.O_WRONLY | os.O_CREAT | _NO_LINK, 0o644)
         try:
             before = os.lseek(handle, 0, os.SEEK_END)
             try:
@@ -222,13 +224,23 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
 
 
 def _resumed(data: Path, plan_text: str) -> Journal:
-    """Read the journal as `read_journal`; SettingsError where it was started with another plan."""
-    journal = read_journal(data)
+    """Read the journal as `read_journal`, to append to it.
+
+    Raises:
+        SettingsError: It was started with another plan, or is a link to a file elsewhere.
+    """
+    journal, file = read_journal(data), data / JOURNAL_FILE
+    if file.is_symlink() or file.stat().st_nlink > 1:
+        raise SettingsError(
+            "is a link to a file that has another name, which must not change; put a copy in its "
+            "place",
+            file=file,
+        )
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
             "was started with another plan or another text of it, comments included; use the text "
             "in the first line of this file, or choose another folder with --data",
-            file=data / JOURNAL_FILE,
+            file=file,
         )
     return journal
 

@@ -55,12 +55,18 @@ class EmergencyLatch:
         """Create the file, not latched, with its disk space; leave an existing file as it is.
 
         Raises:
-            OSError: The file cannot be created or opened, or is not a regular file.
+            OSError: The file cannot be created or opened, is not a regular file, or has another
+                name, under which it must not change.
         """
         try:
-            os.close(self._open(os.O_WRONLY))
+            handle = self._open(os.O_WRONLY)
         except FileNotFoundError:
             self._write(b"", os.O_CREAT | os.O_EXCL)
+            return
+        names = os.fstat(handle).st_nlink
+        os.close(handle)
+        if names > 1:
+            raise OSError(errno.EMLINK, f"it is one file with {names} names", str(self._file))
 
     def latch(self, reason: str) -> None:
         """Write the reason of an emergency stop, cut to 256 characters, into the prepared file.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from rig.errors import InUse
-from rig.exclusive import Exclusive
+from rig.exclusive import folder_lock
 from rig.experiment.control import Control
 from rig.experiment.control_server import ControlServer, send_command
 from rig.experiment.plan import Plan
@@ -34,13 +34,11 @@ from zebro_lab.files.errors import (
     NotFound,
     RecordingError,
     SettingsError,
-    ZebroLabError,
 )
 from zebro_lab.runs.folder import removing_new_folders
 from zebro_lab.runs.manifest import MANIFEST_FILE, RunManifest
 
 CONTROL_FILE: Final = "control.json"
-LOCK_FILE: Final = ".experiment.lock"
 
 
 def run_experiment(
@@ -172,30 +170,22 @@ def _require_same_source(data: Path, source: str) -> None:
 def _owned(data: Path) -> Iterator[None]:
     """Create and lock the experiment's folder while the body runs.
 
-    The lock file is removed after a ZebroLabError that came before a journal was written.
-
     Raises:
         InUse: Another program has locked it.
-        RecordingError: The folder or the lock file cannot be written.
+        RecordingError: The folder cannot be written or locked.
     """
     try:
         data.mkdir(parents=True, exist_ok=True)
-        lock = Exclusive(data / LOCK_FILE, what=f"the experiment in {data}")
+        lock = folder_lock(data, what=f"the experiment in {data}")
         lock.take()
     except InUse:
         raise
     except OSError as error:
         raise RecordingError(
             f"cannot write to {data}: {error.strerror}; choose another folder with --data"
-        ) from (error)
-    try:
+        ) from error
+    with lock:
         yield
-    except ZebroLabError:
-        if not (data / JOURNAL_FILE).exists():
-            (data / LOCK_FILE).unlink(missing_ok=True)
-        raise
-    finally:
-        lock.release()
 
 
 def command_run(data: Path, command: str) -> str:

@@ -7,12 +7,13 @@ import subprocess
 import sys
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from rig.errors import RigError
+from rig.errors import InUse, RigError
 from rig.experiment.control import Control
 from rig.links.serve import PortServer
 from rig.safety import StopCategory
@@ -24,10 +25,11 @@ from rig.slip_rig.sweep import SweepPlan
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment.journal import read_journal
 from zebro_lab.experiment.stage import command_run
-from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.errors import DataError, NotFound, SettingsError, ZebroLabError
 from zebro_lab.runs.folder import find_runs, read_slip_rig_run
 from zebro_lab.runs.manifest import read_manifest
 
+LINUX = pytest.mark.skipif(sys.platform != "linux", reason="needs abstract Unix sockets")
 WATCHDOG = 2.0
 """Ten times a real one's [s]: a busy machine holds a process up for longer than that."""
 
@@ -97,6 +99,49 @@ def test_a_plan_beyond_a_limit_leaves_nothing_behind(lab, plan, tmp_path):
     with pytest.raises(SettingsError, match=r"plan\.toml: .* 50 rad/s; its limit is 40 rad/s"):
         lab.run(plan, tmp_path / "data")
     assert not (tmp_path / "data").exists()
+
+
+@pytest.mark.parametrize("link", [Path.symlink_to, Path.hardlink_to])
+@pytest.mark.parametrize(
+    "name",
+    [
+        ".experiment.lock",
+        ".experiment.reserve",
+        ".control.json.new",
+        "control.json",
+        "emergency-latch",
+        "experiment.jsonl",
+    ],
+)
+def test_a_link_in_place_of_an_experiments_file_changes_nothing_elsewhere(
+    lab, plan, tmp_path, name, link
+):
+    shorten(plan)
+    data, elsewhere, control = tmp_path / "data", tmp_path / "elsewhere", Control()
+    stop = lab.StopAfter(1, lambda: control.stop.request(StopCategory.SAFE, "planted"))
+    lab.run(plan, data, watcher=stop, control=control)
+    place = data / name
+    before = place.read_bytes() + b'{"cut' if place.exists() else b"precious\n"
+    place.unlink(missing_ok=True)
+    elsewhere.write_bytes(before)
+    link(place, elsewhere)
+    refused = name in {"emergency-latch", "experiment.jsonl"}
+    with pytest.raises(ZebroLabError, match=name) if refused else nullcontext():
+        lab.run(plan, data, resume=True, reset_emergency=True)
+    assert elsewhere.read_bytes() == before
+
+
+@LINUX
+def test_an_experiment_has_one_owner_whatever_files_are_deleted(lab, plan, tmp_path):
+    data = tmp_path / "data"
+
+    def intrude():
+        for file in data.glob(".*"):
+            file.unlink()
+        with pytest.raises(InUse, match=f"the experiment in .* is in use by process {os.getpid()}"):
+            lab.run(plan, data, resume=True)
+
+    assert lab.run(plan, data, watcher=lab.StopAfter(2, intrude)).completed
 
 
 class Rig:

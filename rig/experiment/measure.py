@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Take the zero of the load cell, settle the discs at a point, and record its samples."""
+"""Take and check the zero of the load cell, settle the discs at a point, and record its samples."""
 
+from collections.abc import Callable
 from typing import Final
 
 from rig.clock import Clock
+from rig.errors import LimitExceeded
 from rig.experiment.acquire import GuardedAcquisition
-from rig.experiment.plan import Plan
+from rig.experiment.plan import Controls, Plan
 from rig.experiment.readings import Batch, Readings, join
 from rig.experiment.sink import RunSink
 from rig.experiment.steps import Point
 from rig.experiment.verdict import LEAST_COVERED, is_steady, span
-from rig.slip_rig.decode import Forces, Zero, tare
+from rig.slip_rig.decode import Forces, Zero, require_zero, tare
 
 ZERO_ATTEMPTS: Final = 3
 """Largest number of recordings for a zero whose samples cover too little of the duration."""
@@ -36,6 +38,53 @@ def take_zero(acquire: GuardedAcquisition, duration: float) -> Zero:
         if span(readings) >= LEAST_COVERED * duration:
             break  # otherwise the host was delayed
     return tare(Forces(readings.t, readings.normal_force, readings.traction_force))
+
+
+def undoubted_zero(
+    acquire: GuardedAcquisition,
+    controls: Controls,
+    sink: RunSink,
+    *,
+    known: Zero | None,
+    ask: Callable[[str], bool],
+) -> Zero:
+    """Take the zero of the load cell until it agrees with a known one, or a person confirms it.
+
+    Each zero is stored as an event, and a difference from the known one as a warning. Without a
+    known one any zero is in doubt: nothing else would tell a load that was left on the cell.
+
+    Args:
+        acquire: The rig, at standstill and said to be unloaded.
+        controls: Duration of a zero, and its largest change.
+        sink: Receiver of the events.
+        known: Last zero of the experiment, or the profile's reading without load; None without.
+        ask: Asks whether the cell is unloaded, and returns once that is confirmed; False where
+            nobody is to be asked, as with a simulated operator.
+
+    Raises:
+        ProtocolError, RigError: As `take_zero`.
+    """
+    doubt, confirmed = "with nothing stored as its zero", None
+    while True:
+        zero = take_zero(acquire, controls.tare_duration)
+        sink.event(
+            "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "
+            f"standard error {zero.standard_error:.4f} N"
+        )  # fmt: skip
+        for before in (known, confirmed):
+            if before is not None:
+                try:
+                    require_zero(before, zero, limit=controls.zero_drift)
+                except LimitExceeded as drift:
+                    doubt = str(drift)
+                else:
+                    return zero
+        if known is not None:
+            sink.event("warning", doubt)
+        reads = f"the load cell reads {zero.normal:.2f} N (traction {zero.traction:.2f} N), {doubt}"
+        if not ask(f"{reads}: is it unloaded? If not, unload it; then confirm"):
+            return zero
+        confirmed = zero
 
 
 def settle(acquire: GuardedAcquisition, plan: Plan, point: Point, zero: Zero) -> bool:

@@ -118,7 +118,7 @@ class Controls:
         tare_every: Number of points, check points not counted, between two zeros of the load
             cell; 0 means a single zero, before the first point.
         tare_duration: Time over which a zero is averaged [s].
-        zero_drift: Largest change of a zero without a warning; twice its standard error is added
+        zero_drift: Largest change of a zero without a question; twice its standard error is added
             [N].
         check_every: Number of points between two check points, the first of which precedes all
             points; 0 means no check points.

@@ -6,20 +6,20 @@ from dataclasses import InitVar, dataclass
 from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.errors import LimitExceeded, ProtocolError
+from rig.errors import ProtocolError
 from rig.experiment.acquire import PERIOD, GuardedAcquisition
 from rig.experiment.bench import Bench
 from rig.experiment.condition import Condition, RigState
 from rig.experiment.control import Control
 from rig.experiment.load import LoadSetter
-from rig.experiment.measure import record, settle, take_zero
+from rig.experiment.measure import record, settle, undoubted_zero
 from rig.experiment.plan import Plan
 from rig.experiment.readings import Batch
 from rig.experiment.sink import ExperimentWatcher, RunSink, RunStart, SinkFailed
 from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out, steps_left
-from rig.experiment.verdict import PointVerdict, judge_point
+from rig.experiment.verdict import PointVerdict, contradiction, judge_point
 from rig.safety import StopCategory, StopRequested
-from rig.slip_rig.decode import Zero, require_zero
+from rig.slip_rig.decode import Zero
 
 REST_TIMEOUT: Final = 5.0
 """Timeout for the discs to stand after their set-points are zero [s]."""
@@ -61,6 +61,7 @@ def run_plan(
     clock: Clock = SYSTEM_CLOCK,
     period: float = PERIOD,
     done: Collection[int] = (),
+    zero: Zero | None = None,
 ) -> RunOutcome:
     """Run a plan; in the end the drives are de-energised and the sink has stored the reason.
 
@@ -74,6 +75,7 @@ def run_plan(
         clock: Host time.
         period: Polling period of the rig [s].
         done: Numbers of the points that an earlier run finished; they are left out.
+        zero: Last zero of the load cell in an earlier run; None without one.
 
     Returns:
         The outcome of a run that was completed or stopped on request.
@@ -88,9 +90,8 @@ def run_plan(
     require_allowed(plan, bench.profile)
     if control.stop.latched:
         raise ProtocolError("an emergency stop is latched; inspect the rig, then reset the stop")
-    run = _Run(
-        plan, bench, load, sink, control, watcher or ExperimentWatcher(), clock, period, done
-    )
+    watcher, known = watcher or ExperimentWatcher(), zero or bench.profile.unloaded
+    run = _Run(plan, bench, load, sink, control, watcher, clock, known, period, done)
     return run.go()
 
 
@@ -105,6 +106,7 @@ class _Run:
     _control: Control
     _watcher: ExperimentWatcher
     _clock: Clock
+    _zero: Zero | None
     period: InitVar[float]
     done: InitVar[Collection[int]]
 
@@ -118,11 +120,11 @@ class _Run:
         self._points = len(points)
         self._done = points & set(done)
         self._past = set(self._done)  # steps that need no time any more: refused points, too
-        self._zero: Zero | None = None
         self._loaded: float | None = None
         self._recording = False
         self._attempts = 0
         self._refused: list[int] = []
+        self._verdicts: dict[Point, PointVerdict] = {}
 
     def go(self) -> RunOutcome:
         """Run the plan; in every case leave the rig de-energised and store the reason."""
@@ -229,29 +231,22 @@ class _Run:
         self._watcher.changed(condition)
 
     def _tare(self) -> None:
-        """Unload and take the zero of the load cell; warn where it drifted beyond `zero_drift`."""
+        """Unload and take the zero of the load cell; a person confirms one that is in doubt."""
         self._announce("zero of the load cell")
-        self._set_load(0.0)
-        zero = take_zero(self._acquire, self._plan.controls.tare_duration)
-        self._sink.event(
-            "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "
-            f"standard error {zero.standard_error:.4f} N"
+        by_hand = self._set_load(0.0)
+        self._zero = undoubted_zero(
+            self._acquire, self._plan.controls, self._sink, known=self._zero,
+            ask=lambda question: by_hand and self._set_load(0.0, question),
         )  # fmt: skip
-        if self._zero is not None:
-            try:
-                require_zero(self._zero, zero, limit=self._plan.controls.zero_drift)
-            except LimitExceeded as drift:
-                self._sink.event("warning", str(drift))
-        self._zero = zero
 
-    def _set_load(self, target: float) -> None:
-        """Have a normal force set at standstill, unless it already is; 0 removes all load [N]."""
-        if target == self._loaded:
-            return
+    def _set_load(self, target: float, question: str = "") -> bool:
+        """Have a normal force set, or a question confirmed [N]; return whether one was asked."""
+        if target == self._loaded and not question:
+            return False
         self._loaded = None
         self._acquire.come_to_rest(REST_TIMEOUT)
-        prompt = self._load.request(target)
-        if prompt:
+        if prompt := self._load.request(target):
+            prompt = question or prompt
             self._control.status = prompt
             self._sink.event("prompt", prompt)
         zero = self._zero or UNLOADED
@@ -267,6 +262,7 @@ class _Run:
 
         self._acquire.until(is_set, float("inf"))
         self._loaded = target
+        return bool(prompt)
 
     def _measure(self, point: Point) -> None:
         """Set the load and measure a point until an attempt is accepted, or refuse it after all."""
@@ -295,6 +291,10 @@ class _Run:
             readings, point, self._plan.accept, settled=settled,
             duration=self._plan.points.duration, profile=self._bench.profile,
         )  # fmt: skip
+        if verdict.accepted and (warning := contradiction(point, verdict, self._verdicts)):
+            self._sink.event("warning", warning)
+            self._watcher.notice(warning)
+        self._verdicts[point] = verdict
         self._close("completed", verdict)
         return verdict
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Test for steady state, and quality checks of a recorded point."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -16,6 +16,18 @@ from rig.slip_rig.profile import RigProfile
 
 LEAST_COVERED: Final = 0.8
 """Least fraction of a point's duration that its samples must span [-]."""
+SAME_SLIP: Final = 0.02
+"""Largest difference of two slip ratios that count as the same one [-]."""
+LEAST_SLIP: Final = 0.1
+"""Least slip ratio at which frictions are compared: below, that of a law with a constant initial
+slope falls as the load grows, and noise counts [-]."""
+FRICTION_RATIOS: Final = (0.5, 1.5)
+"""Expected range of friction at the smaller of two loads over that at the larger [-].
+
+A load that is left on the cell during its zero makes readings of normal force too small, and so
+friction too large, most at small loads. The thesis's law, whose friction grows with the load, goes
+down to 0.63.
+"""
 
 
 @dataclass(frozen=True)
@@ -41,6 +53,32 @@ class PointVerdict:
     def accepted(self) -> bool:
         """Return whether the point passed every check."""
         return not self.problems
+
+
+def contradiction(point: Point, verdict: PointVerdict, others: Mapping[Point, PointVerdict]) -> str:
+    """Compare the friction of a point with that at the same slip ratio and other loads.
+
+    Args:
+        point: The point.
+        verdict: Its verdict.
+        others: Verdicts of other points; only accepted ones are compared.
+
+    Returns:
+        Warning that names the first point beyond `FRICTION_RATIOS` and this one; empty without.
+    """
+    for other, judged in others.items():
+        pair = sorted(((point, verdict), (other, judged)), key=lambda item: item[0].load)
+        (light, small), (heavy, large) = pair
+        alike = abs(small.slip - large.slip) <= SAME_SLIP and abs(small.slip) >= LEAST_SLIP
+        comparable = alike and judged.accepted and light.load < heavy.load
+        least, most = (ratio * abs(large.friction) for ratio in FRICTION_RATIOS)
+        if comparable and not least <= abs(small.friction) <= most:
+            return (
+                f"friction is {small.friction:.3f} in {light.label}, and {large.friction:.3f} in "
+                f"{heavy.label}: loads alone seldom make such a difference; check the zero of the "
+                "load cell"
+            )
+    return ""
 
 
 def span(readings: Readings) -> float:

@@ -19,6 +19,7 @@ from rig.slip_rig.profile import (
     ForceAxis,
     LoadCellProfile,
     RigProfile,
+    Zero,
 )
 
 BATCHES: Final = 10
@@ -211,21 +212,6 @@ def decode_board(profile: BoardProfile, samples: Sequence[Sample]) -> tuple[Forc
         time, profile.normal_sign * newtons[:, 0], profile.traction_sign * newtons[:, 1]
     )
     return forces, DiscSpeeds(time, speeds[:, 0], speeds[:, 1])
-
-
-@dataclass(frozen=True)
-class Zero:
-    """Zero offset: mean reading of an unloaded load cell.
-
-    Attributes:
-        normal: Mean normal force [N].
-        traction: Mean traction force [N].
-        standard_error: Larger of the standard errors of both means, from ten batch means [N].
-    """
-
-    normal: float
-    traction: float
-    standard_error: float
 
 
 def standard_error(values: Array) -> float:

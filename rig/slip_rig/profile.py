@@ -119,6 +119,21 @@ class BoardProfile:
 
 
 @dataclass(frozen=True)
+class Zero:
+    """Zero offset: mean reading of an unloaded load cell.
+
+    Attributes:
+        normal: Mean normal force [N].
+        traction: Mean traction force [N].
+        standard_error: Larger of the standard errors of both means [N].
+    """
+
+    normal: float
+    traction: float
+    standard_error: float
+
+
+@dataclass(frozen=True)
 class RigProfile:
     """A slip rig: either drives and a load cell, or a board.
 
@@ -130,6 +145,7 @@ class RigProfile:
         drives: Both drives; None where there is a board.
         load_cell: The load cell; None where there is a board.
         board: The board; None where there are drives.
+        unloaded: What the load cell or board reads without load; None where that is not known.
     """
 
     name: str
@@ -139,6 +155,7 @@ class RigProfile:
     drives: DriveProfile | None
     load_cell: LoadCellProfile | None
     board: BoardProfile | None
+    unloaded: Zero | None = None
 
     @property
     def measured(self) -> frozenset[str]:
@@ -195,6 +212,7 @@ def load_rig_profile(name: str) -> RigProfile:
         drives=None if drives.empty else _drives(drives),
         load_cell=None if load_cell.empty else _load_cell(load_cell),
         board=(made := None if board.empty else _board(board)),
+        unloaded=_unloaded(table.table("unloaded")),
         limits=_NO_LIMITS if made and made.link == "table" else _limits(limits),
     )
     table.finish()
@@ -255,6 +273,14 @@ def _load_cell(table: TomlTable) -> LoadCellProfile:
         normal=normal,
         traction=traction,
     )
+
+
+def _unloaded(table: TomlTable) -> Zero | None:
+    """Read forces without load, and twice their standard error; None where the table is absent."""
+    if table.empty:
+        return None
+    normal, traction = table.number("normal"), table.number("traction")
+    return Zero(normal, traction, table.positive("tolerance") / 2)
 
 
 def _axis(table: TomlTable) -> ForceAxis:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from rig.slip_rig.decode import Zero
 from zebro_lab.experiment.journal import Journal
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.runs.exclusion import exclude_run
@@ -28,10 +29,12 @@ class Finished:
     Attributes:
         numbers: Numbers of the points in the plan that are finished.
         notices: Messages on runs left out, lost or damaged, one line each.
+        zero: Zero of the load cell of the latest of these runs; None without one.
     """
 
     numbers: frozenset[int]
     notices: tuple[str, ...]
+    zero: Zero | None
 
 
 def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dict[str, Any]:
@@ -78,7 +81,16 @@ def finished_points(data: Path, journal: Journal) -> Finished:
             notices.append(f"{run.name}: {why}; this run is excluded")
     notices += [f"{name}: the run folder is missing; its point is measured again if in no other run"
                 for name in sorted(journal.accepted) if not (data / name).exists()]  # fmt: skip
-    return Finished(frozenset(numbers), tuple(notices))
+    return Finished(frozenset(numbers), tuple(notices), _last_zero(manifests, journal.plan))
+
+
+def _last_zero(manifests: list[tuple[Path, RunManifest]], plan: str) -> Zero | None:
+    """Return the zero stored with the latest run of a plan, as if without noise; None without."""
+    for _, manifest in reversed(manifests):
+        stored = manifest.constants
+        if manifest.point.get("plan") == plan and {"zero_normal", "zero_traction"} <= set(stored):
+            return Zero(stored["zero_normal"], stored["zero_traction"], standard_error=0.0)
+    return None
 
 
 def holds_points(data: Path) -> bool:

@@ -82,6 +82,7 @@ def run_experiment(
                 return run_plan(
                     plan, bench=rig.bench, load=load, sink=folder, control=control,
                     watcher=watcher, clock=rig.clock, period=rig.period, done=finished.numbers,
+                    zero=finished.zero,
                 )  # fmt: skip
 
 

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: MIT
 """A plan is run on a twin: order of points, repeats, stops and what is kept."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
 from rig.experiment.condition import RigState
+from rig.experiment.load import HandShaft
 from rig.experiment.sink import ExperimentWatcher, SinkFailed
 from rig.safety import StopCategory
-from rig.slip_rig.decode import measured_slip
+from rig.slip_rig.decode import Zero, measured_slip
 from support.memory_sink import MemorySink
 
 
@@ -274,3 +277,94 @@ def test_guards_that_are_off_are_kept_in_the_log_and_shown(lab):
     assert twin.run(lab["plan"](limits=limits), watcher=Screen()).completed
     assert ("guards off", "silence (1.5 s)") in twin.sink.events[:2]
     assert all(what.endswith("[guards off: silence]") for what in shown)
+
+
+class Shaft(ExperimentWatcher):
+    """A person at the shaft who confirms with 4 N left on the cell, until the question is asked."""
+
+    def __init__(self, twin):
+        self.twin, self.asked, self.notices = twin, [], []
+
+    def prompt(self, text, *, normal):
+        if text not in self.asked:
+            self.asked.append(text)
+            first = len(self.asked) == 1
+            load = float(text.split()[5]) if text.startswith("set") else 4.0 if first else 1e-3
+            self.twin.rig.load = load
+        self.twin.control.confirm()
+
+    def notice(self, text):
+        self.notices.append(text)
+
+    @property
+    def questions(self):
+        return [text for text in self.asked if "is it unloaded?" in text]
+
+    def judged(self, point, verdict, *, attempt):
+        pass
+
+
+def by_hand(twin, **options):
+    shaft = Shaft(twin)
+    hand = HandShaft(twin.control, tolerance=8.0)  # the discs may stand on the bump
+    return shaft, twin.run(load=hand, watcher=shaft, **options)
+
+
+KNOWN = Zero(0.0, 0.0, 0.2)
+
+
+@pytest.mark.parametrize("known", ["nothing", "profile", "earlier zero"])
+def test_a_zero_under_load_is_asked_about_and_taken_again(lab, known):
+    twin = lab["twin"]()
+    if known == "profile":
+        twin.bench.profile = replace(twin.bench.profile, unloaded=KNOWN)
+    zero = Zero(0.0, 0.0, 0.02) if known == "earlier zero" else None
+    shaft, outcome = by_hand(twin, zero=zero)
+    assert outcome.completed
+    assert "reads 4." in shaft.questions[0]
+    # Without anything known, what it reads unloaded is asked about, too.
+    assert len(shaft.questions) == (2 if known == "nothing" else 1)
+    for run in twin.sink.accepted:
+        assert abs(run.start.zero.normal) < 0.1
+        assert abs(run.start.zero.traction) < 0.2
+
+
+def test_a_known_unloaded_cell_is_not_asked_about(lab):
+    twin = lab["twin"]()
+    twin.bench.profile = replace(twin.bench.profile, unloaded=KNOWN)
+    questions = []
+
+    class Careful(Shaft):
+        def prompt(self, text, *, normal):
+            if "is it unloaded?" in text:
+                questions.append(text)
+            twin.rig.load = float(text.split()[5]) if text.startswith("set") else 1e-3
+            twin.control.confirm()
+
+    assert twin.run(load=HandShaft(twin.control, tolerance=8.0), watcher=Careful(twin)).completed
+    assert not questions
+
+
+def test_points_that_contradict_each_other_are_named_on_screen_and_in_the_log(lab):
+    twin, notices, loaded = lab["twin"](), [], 4.0
+
+    class Careless(ExperimentWatcher):
+        def prompt(self, text, *, normal):
+            wanted = float(text.split()[5]) if text.startswith("set") else 0.0
+            twin.rig.load = loaded + wanted  # a load is left on at the zero, and asked about
+            twin.control.confirm()
+
+        def notice(self, text):
+            notices.append(text)
+
+    plan = lab["plan"](points={"loads": [2.0, 8.0]})
+    load = HandShaft(twin.control, tolerance=8.0)
+    assert twin.run(plan, load=load, watcher=Careless()).completed
+    warnings = [text for kind, text in twin.sink.events if kind == "warning"]
+    assert warnings == notices != []
+    assert all("Fn 2 N slip" in text and "Fn 8 N slip" in text for text in warnings)
+    assert all("check the zero" in text for text in warnings)
+    notices.clear()
+    loaded = 0.0
+    assert lab["twin"]().run(plan, watcher=Careless()).completed  # a sound rig
+    assert not notices

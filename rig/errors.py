@@ -45,7 +45,7 @@ class ProtocolError(RigError, ValueError):
 
 
 class DeviceMismatch(RigError, ValueError):
-    """The device at the port sends packets of another kind or length than the profile describes."""
+    """Another device is at the port than the profile describes, or than was there before."""
 
 
 class DeviceFault(RigError, RuntimeError):

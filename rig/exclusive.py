@@ -117,7 +117,10 @@ class Exclusive:
             if _NAMED:
                 held.enter_context(self._listen())
             if self._file is not None:
-                handle = _open(self._file)
+                # Opened for reading only: what is there, also under another name, is not changed.
+                create = 0 if self._file.is_dir() else os.O_CREAT
+                flags = os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | create
+                handle = os.open(self._file, flags, 0o666)
                 held.callback(os.close, handle)
                 if not try_lock(handle):
                     raise self._in_use("another program")
@@ -167,7 +170,7 @@ def folder_lock(folder: Path, *, what: str) -> Exclusive:
         OSError: There is no such folder.
     """
     found = folder.stat()
-    return Exclusive(f"folder:{found.st_dev}:{found.st_ino}", what=what, file=folder)
+    return Exclusive(f"folder:{found.st_dev}:{found.st_ino}", what=what, file=folder.resolve())
 
 
 def _device_path(path: str) -> str:
@@ -192,17 +195,6 @@ def _device_path(path: str) -> str:
 def _hash(name: str) -> str:
     """Return the hash of a lock's name, by which all programs find it."""
     return hashlib.sha256(os.fsencode(name)).hexdigest()[:32]
-
-
-def _open(place: Path) -> int:
-    """Open a folder, or a file that is created when missing, for locking; return its handle.
-
-    It is opened for reading only, so that what a link or another name leads to is not changed.
-    """
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
-    if place.is_dir():
-        return os.open(place, flags)
-    return os.open(place, flags | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
 
 
 def _owner(place: str) -> str:

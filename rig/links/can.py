@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Final, cast
 import can
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.errors import LinkError, RigTimeout
+from rig.errors import DeviceMismatch, LinkError, RigTimeout
 from rig.exclusive import Exclusive, device_lock
+from rig.links.port_device import PortDevice
 
 if TYPE_CHECKING:
     import serial
@@ -66,6 +67,7 @@ class CanLink:
         self._clock = clock
         self._bus: can.BusABC | None = None
         self._lock = _bus_lock(channel)
+        self._device = PortDevice(_port_name(str(channel)))
         self._retry_at = 0.0
         self._last_arrival = -math.inf
         self._empty_at = self._since = clock.now()
@@ -82,7 +84,7 @@ class CanLink:
         if self._lock is not None:
             self._lock.take()
         try:
-            self._bus = self._connect()
+            self._bus = self._connect(again=False)
             self._empty_at = self._since = self._clock.now()
         except (can.CanError, OSError, ValueError, ImportError) as problem:
             self.close()
@@ -112,6 +114,9 @@ class CanLink:
         Only frames with 11-bit ids are returned, at most `MAX_PER_READ` of them; remote and damaged
         frames are discarded. While the bus is disconnected the call tries to reopen it, at most
         every `RETRY_AFTER`, and returns no frames without success.
+
+        Raises:
+            DeviceMismatch: Another USB adapter than that which was opened is at the bus's port.
         """
         if self._bus is None and not self._reconnect(timeout):
             return []
@@ -255,12 +260,18 @@ class CanLink:
         elif not message.is_remote_frame and not message.is_extended_id:
             messages.append(message)
 
-    def _connect(self) -> can.BusABC:
-        """Open the bus by its name, or return the one that was given open."""
+    def _connect(self, *, again: bool) -> can.BusABC:
+        """Open the bus by its name, or return the one that was given open.
+
+        An adapter on a serial port is opened exclusively; it is the same as before if `again`.
+        """
         if isinstance(self._channel, can.BusABC):
             return self._channel
         interface, _, channel = self._channel.partition(":")
-        return can.Bus(channel=channel, interface=interface, bitrate=self._bitrate)
+        bus = can.Bus(channel=channel, interface=interface, bitrate=self._bitrate)
+        if (port := _serial_port(bus)) is not None:
+            self._device.take(port, bus.shutdown, again=again)
+        return bus
 
     def _drop_connection(self) -> None:
         """Close a bus that failed; `_reconnect` may reopen it after `RETRY_AFTER`."""
@@ -270,7 +281,8 @@ class CanLink:
     def _reconnect(self, timeout: float) -> bool:
         """Try to reopen a lost bus, at most every `RETRY_AFTER`; return whether it is open.
 
-        Waits at most `timeout` [s]. A bus that was given as an object is never reopened.
+        Waits at most `timeout` [s]. A bus that was given as an object is never reopened. Raises
+        DeviceMismatch where another adapter is at its port.
         """
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
@@ -278,7 +290,9 @@ class CanLink:
             return False
         self._retry_at = self._clock.now() + RETRY_AFTER
         try:
-            self._bus = self._connect()
+            self._bus = self._connect(again=True)
+        except DeviceMismatch:
+            raise
         except (can.CanError, OSError, ValueError):
             return False
         self._empty_at = self._clock.now()
@@ -298,5 +312,10 @@ def _bus_lock(channel: "str | can.BusABC") -> Exclusive | None:
     """
     if isinstance(channel, can.BusABC) or channel.startswith("virtual:"):
         return None
+    return device_lock(_port_name(channel))
+
+
+def _port_name(channel: str) -> str:
+    """Return the serial port of an adapter's channel, `slcan:PORT@BAUDRATE`; else the channel."""
     interface, _, place = channel.partition(":")
-    return device_lock(place.partition("@")[0] if interface == "slcan" else channel)
+    return place.partition("@")[0] if interface == "slcan" else channel

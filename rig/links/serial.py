@@ -10,8 +10,9 @@ from typing import Final, cast
 import serial
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.errors import LinkError, RigTimeout
+from rig.errors import DeviceMismatch, LinkError, RigTimeout
 from rig.exclusive import device_lock
+from rig.links.port_device import PortDevice
 
 CHUNK: Final = 1 << 16
 """Largest number of bytes of one system call [bytes]."""
@@ -27,7 +28,8 @@ class SerialLink:
     """Bytes to and from a serial port, or any URL that pyserial knows (`socket://host:port`).
 
     A read returns all available bytes, many frames with one system call. A disconnected port is
-    closed and reopened while the stream continues; `reconnected` counts how often.
+    closed and reopened while the stream continues; `reconnected` counts how often. Another USB
+    device than that which was opened is refused then.
 
     Args:
         port: Name of the port, or a URL.
@@ -47,6 +49,7 @@ class SerialLink:
         self._serial: serial.Serial | None = None
         self._retry_at = 0.0
         self._lock = device_lock(port)
+        self._device = PortDevice(port)
 
     def open(self) -> None:
         """Lock and open the port, so that no other program uses it.
@@ -58,7 +61,7 @@ class SerialLink:
         """
         self._lock.take()
         try:
-            self._serial = self._connect()
+            self._serial = self._connect(again=False)
         except (OSError, ValueError) as problem:
             self._lock.release()
             raise LinkError(
@@ -77,6 +80,9 @@ class SerialLink:
 
         A read ends once it has `MAX_PER_READ`. While the port is disconnected the call tries to
         reopen it, at most every `RETRY_AFTER`, and returns nothing without success.
+
+        Raises:
+            DeviceMismatch: Another USB device than that which was opened is at the port.
         """
         if self._serial is None and not self._reconnect(timeout):
             return b""
@@ -106,8 +112,8 @@ class SerialLink:
             return False
         return True
 
-    def _connect(self) -> serial.Serial:
-        """Open the port, exclusively where it is a device."""
+    def _connect(self, *, again: bool) -> serial.Serial:
+        """Open the port, exclusively where it is a device; the same as before if `again`."""
         opened = serial.serial_for_url(
             self.port, do_not_open=True, baudrate=self._baudrate, timeout=0,
             write_timeout=WRITE_TIMEOUT,
@@ -116,6 +122,7 @@ class SerialLink:
         if not self.port.startswith("socket:"):
             port.exclusive = True  # two readers would each get a part of the bytes
         port.open()
+        self._device.take(port, port.close, again=again)
         return port
 
     def _disconnect(self) -> None:
@@ -132,7 +139,7 @@ class SerialLink:
     def _reconnect(self, timeout: float) -> bool:
         """Try to reopen a lost port, at most every `RETRY_AFTER`; return whether it is open.
 
-        Waits at most `timeout` [s].
+        Waits at most `timeout` [s]. Raises DeviceMismatch where another device is at the port.
         """
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
@@ -140,7 +147,9 @@ class SerialLink:
             return False
         self._retry_at = self._clock.now() + RETRY_AFTER
         try:
-            self._serial = self._connect()
+            self._serial = self._connect(again=True)
+        except DeviceMismatch:
+            raise
         except (OSError, ValueError):
             self._clock.sleep(max(timeout - max(wait, 0.0), 0.0))
             return False

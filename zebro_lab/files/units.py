@@ -4,10 +4,10 @@
 import math
 import re
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
 from model.similar_name import similar_name
-from zebro_lab.files.errors import SettingsError, UnitError
+from zebro_lab.files.errors import SettingsError, UnitError, shortened
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -43,6 +43,12 @@ _BASES = (
 )
 _POWER = r"(?:\^?-?[1-4]|[²³]|⁻[¹²]|\*\*-?[1-4])?"
 _UNIT_TEXT = re.compile(rf"(?:1|{_BASES}){_POWER}(?:[/*·. ](?:{_BASES}){_POWER})*")
+_BOUNDED = re.compile(
+    r"(?:[^\W\d_]\w*+|1(?!\w)|[-/*·.() °%‰µ⁻]|(?:\*\*|\^) *[-+]?\d{1,2}(?!\w| *(?:\*\*|\^)))*"
+)
+"""Names, 1, and powers of up to two digits, no tower of them: pint multiplies out any number."""
+_LONGEST: Final = 60
+"""Largest length of the text of a unit [characters]."""
 _SMALLER = {"m": ("cm", "mm"), "kg": ("g", "g"), "dimensionless": ("%", "%")}
 """Unit that a number above `usual` is probably in: if up to ten times as large, and if larger."""
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
@@ -221,16 +227,24 @@ def _in_root_units(unit: str) -> tuple[float, str]:
     text = "dimensionless" if text.casefold() in _NO_UNIT else text
     registry = _registry()
     try:
-        try:
-            parsed = registry.parse_units(text)
-        except Exception:  # pint answers malformed text with anything, AssertionError too
-            parsed = registry.parse_units(_respelled(text))
-        quantity = registry.Quantity(1.0, parsed).to_root_units()
+        quantity = registry.Quantity(1.0, _parsed(text)).to_root_units()
     except Exception as error:
-        near = similar_name(text, _COMMON)
+        near = similar_name(text[:_LONGEST], _COMMON)
         advice = f"did you mean '{near}'?" if near else f"known are {', '.join(_COMMON)}, …"
-        raise UnitError(f"unknown unit '{unit}'; {advice}", unit=unit) from error
+        raise UnitError(
+            f"unknown unit '{shortened(unit, _LONGEST)}'; {advice}", unit=unit
+        ) from error
     return float(quantity.magnitude), str(quantity.units)
+
+
+def _parsed(text: str) -> Any:
+    """Parse a unit with pint, in the spelling of strangers as well; raise any exception if not."""
+    if len(text) > _LONGEST or not _BOUNDED.fullmatch(text):
+        raise ValueError("is too long, or would be multiplied out")
+    try:
+        return _registry().parse_units(text)
+    except Exception:  # pint answers malformed text with anything, AssertionError too
+        return _registry().parse_units(_respelled(text))
 
 
 def _respelled(unit: str) -> str:

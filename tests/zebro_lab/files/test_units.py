@@ -73,3 +73,34 @@ def test_quantity_with_unit_round_trips(number):
 def test_what_is_no_quantity_is_refused(text):
     with pytest.raises(UnitError):
         quantity_to_si(text, "m")
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize(
+    "unit",
+    [
+        "9**9**9 mm", "9^9^9", "mm**9**9**9", "((9**9)**9)**9)**9", "(9)**(99999999)",
+        "9⁹⁹⁹⁹⁹⁹⁹ mm",
+        "(1+1)**99**99", "((1-1-1-1)**99)**99", "mm**999999999", "mm " * 100_000, "a" * 59 + "!",
+        "((1_000**99)**99)**99",
+    ],
+    ids=lambda unit: unit[:20],
+)  # fmt: skip
+def test_a_unit_that_would_be_multiplied_out_for_ever_is_an_unknown_one(unit):
+    with pytest.raises(UnitError, match="unknown unit") as raised:
+        factor_to_si(unit, "m")
+    assert len(str(raised.value)) < 300
+    with pytest.raises(UnitError):
+        quantity_to_si(f"9 {unit}", "m")
+
+
+@pytest.mark.parametrize(
+    ("unit", "si_unit", "factor"),
+    [
+        ("m^-1", "1/m", 1.0), ("m**2", "m^2", 1.0), ("1/(mm*s)", "1/(m*s)", 1e3),
+        ("m·s⁻¹", "m/s", 1.0), ("µm", "m", 1e-6), ("km/h", "m/s", 1 / 3.6), ("m/s2", "m/s^2", 1.0),
+        ("mm ^ 2", "m^2", 1e-6),
+    ],
+)  # fmt: skip
+def test_products_and_powers_are_units(unit, si_unit, factor):
+    assert factor_to_si(unit, si_unit) == pytest.approx(factor, rel=1e-12)

@@ -21,7 +21,7 @@ from rig.experiment.sink import RunStart, SinkFailed
 from rig.experiment.verdict import PointVerdict
 from zebro_lab.experiment.journal import EMERGENCY, JournalWriter
 from zebro_lab.experiment.latch import EmergencyLatch
-from zebro_lab.experiment.points import UNJUDGED, point_record
+from zebro_lab.experiment.points import UNJUDGED, point_record, why_excluded
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.run_files import identity
@@ -155,7 +155,8 @@ class ExperimentFolder:
 
         Args:
             kind: Kind of event, such as `note`.
-            text: Description of the event.
+            text: Description of the event; of an `end` that is `completed` although writing failed,
+                the journal has the failure instead.
 
         Raises:
             SinkFailed: The queue is full; or, the event queued, the writing thread has failed
@@ -165,7 +166,8 @@ class ExperimentFolder:
         def note() -> None:
             if self._recorder is not None:
                 self._recorder.event(f"{kind}: {text}")
-            self._journal.append(kind, text)
+            lost = kind == "end" and text == "completed" and self._failure
+            self._journal.append(kind, lost or text)
 
         self._put(note)
         if kind != "end":
@@ -242,7 +244,8 @@ class ExperimentFolder:
     def _close_now(self, verdict: PointVerdict | None, reason: str) -> None:
         """Write the verdict with the end record, and the journal's entry of the point.
 
-        A point whose recorder failed is not accepted. Nothing is written if no run is open.
+        A point whose recorder failed, also while it closed, is not accepted, and the failure is
+        stored for the acquiring thread. Nothing is written if no run is open.
         """
         recorder, self._recorder = self._recorder, None
         if recorder is None or self._start is None:
@@ -250,13 +253,14 @@ class ExperimentFolder:
         start, point = self._start, self._start.point
         kept = recorder.failure is None
         accepted = verdict is not None and verdict.accepted and kept
-        why = "" if accepted else _why_excluded(verdict, reason, recorder.failure)
+        why = "" if accepted else why_excluded(verdict, reason, recorder.failure)
         # Atomic: the end record holds both the verdict and whether the run counts.
         recorder.judge(excluded=why, point=self._point(start, accepted=accepted))
         recorder.end(reason)
         recorder.__exit__(None, None, None)
         if recorder.failure is not None:  # the end record also excludes the run
             accepted, why = False, recorder.failure
+            self._fail(SinkFailed(why))
         judged: dict[str, Any] = {} if verdict is None else {
             "slip": verdict.slip, "friction": verdict.friction, "normal": verdict.normal_force
         }  # fmt: skip
@@ -338,13 +342,3 @@ class ExperimentFolder:
                 f"the disk of {self._data} has {free / 1e6:.0f} MB free; expected "
                 f"the plan's limits.free_space, {self._least_room:g} bytes: free some space"
             )
-
-
-def _why_excluded(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
-    """Return the reason for excluding a run: failure, else why it ended, else failed checks.
-
-    Why it ended, `reason`, counts only without a verdict: the run was aborted.
-    """
-    if failure is not None:
-        return failure
-    return reason if verdict is None else "; ".join(verdict.problems)

@@ -92,7 +92,7 @@ class JournalWriter:
             more: Further entries of the line; values that JSON can hold.
 
         Raises:
-            OSError: The write failed, and the journal is unchanged; or it could not be flushed.
+            OSError: The line could not be written or flushed, and the journal is unchanged.
         """
         entry = {"time": datetime.now(UTC).isoformat(), "kind": kind, "text": text, **more}
         # ASCII escapes: no character of a text can end a line or fail to be encoded.
@@ -119,18 +119,21 @@ class JournalWriter:
         self.append("cut short", cut.decode("utf-8", "backslashreplace"))
 
     def _write(self, line: bytes) -> None:
-        """Append a line and flush it to the disk; a line that was written in part is removed."""
+        """Append a line and flush it to the disk (fsync); one for which that fails is removed."""
         handle = os.open(self._file, os.O_WRONLY | os.O_CREAT | _NO_LINK, 0o644)
         try:
             before = os.lseek(handle, 0, os.SEEK_END)
             try:
                 _write_all(handle, line)
+                os.fsync(handle)
             except OSError:
                 os.ftruncate(handle, before)
+                if not before:  # an empty file would be neither a new experiment nor an old one
+                    self._file.unlink()
                 raise
-            os.fsync(handle)
         finally:
-            os.close(handle)
+            with contextlib.suppress(OSError):  # the line is on the disk, or known to have failed
+                os.close(handle)
 
 
 def _write_all(handle: int, data: bytes) -> None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from rig.experiment.verdict import PointVerdict
 from rig.slip_rig.decode import Zero
 from zebro_lab.experiment.journal import Journal
 from zebro_lab.files.errors import ZebroLabError
@@ -47,6 +48,16 @@ def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dic
         accepted: Whether the point passed its quality checks.
     """
     return {"plan": plan, "number": number, "attempt": attempt, "accepted": accepted}
+
+
+def why_excluded(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
+    """Return the reason for excluding a run: failure, else why it ended, else failed checks.
+
+    Why it ended, `reason`, counts only without a verdict: the run was aborted.
+    """
+    if failure is not None:
+        return failure
+    return reason if verdict is None else "; ".join(verdict.problems)
 
 
 def finished_points(data: Path, journal: Journal) -> Finished:

@@ -7,7 +7,7 @@ import shutil
 import signal
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
@@ -114,16 +114,13 @@ def sync_files(folder: Path) -> None:
 
 def sync_folder(folder: Path) -> None:
     """Flush a folder's list of entries to disk (fsync); errors of the file system are ignored."""
-    try:
+    # A folder may be writable but not listed, and some network file systems cannot fsync one.
+    with suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
-    except OSError:  # a folder that may be written to but not listed
-        return
-    try:
-        os.fsync(handle)
-    except OSError:  # some network file systems cannot fsync a folder
-        return
-    finally:
-        os.close(handle)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def _require_empty(folder: Path, target: object) -> None:

@@ -6,7 +6,8 @@ speeds and forces are computed from the counts with the device's profile, at any
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from operator import sub
 from typing import NamedTuple, Protocol, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -67,6 +68,10 @@ class Counters:
     def rejected(self) -> int:
         """Number of frames that arrived and were discarded: damaged, repeated or refused."""
         return self.damaged + self.repeated + self.refused
+
+    def since(self, earlier: "Counters") -> "Counters":
+        """Return what was counted after `earlier`, a state of the same counters."""
+        return Counters(*map(sub, astuple(self), astuple(earlier)))
 
 
 class Stream(Protocol):

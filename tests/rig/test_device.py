@@ -31,3 +31,10 @@ def test_iterating_ends_on_time(silent):
 
 def test_rejected_frames_are_damaged_repeated_and_refused():
     assert Counters(received=9, lost=5, damaged=1, repeated=2, refused=4).rejected == 7
+
+
+def test_what_was_counted_since_is_the_difference_of_each_number():
+    earlier = Counters(received=9, lost=5, restarted=1)
+    assert Counters(received=12, lost=5, repeated=2, restarted=1).since(earlier) == Counters(
+        received=3, repeated=2
+    )

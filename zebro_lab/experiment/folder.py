@@ -9,13 +9,14 @@ import queue
 import shutil
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Counters, Stream
 from rig.experiment.readings import Batch, Readings
 from rig.experiment.sink import RunStart, SinkFailed
 from rig.experiment.verdict import PointVerdict
@@ -25,6 +26,7 @@ from zebro_lab.experiment.points import UNJUDGED, point_record, why_excluded
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.run_files import identity
+from zebro_lab.recording.status import StreamCounts
 from zebro_lab.runs.manifest import RunManifest
 
 MOST_WAITING: Final = 20_000
@@ -39,10 +41,7 @@ LONGEST_JOB: Final = 10.0
 
 @dataclass(frozen=True)
 class _Job:
-    """Queued write job: a function to call in the writing thread, and the event set after it.
-
-    The event is also set if the function fails.
-    """
+    """Queued write job: a function to call in the writing thread, and the event set at its end."""
 
     write: Callable[[], None]
     done: threading.Event = field(default_factory=threading.Event)
@@ -58,6 +57,7 @@ class ExperimentFolder:
         plan: Fingerprint of the plan.
         manifest: Manifest entries common to all runs.
         profiles: Name and text of the rig's profile, by its role in a run folder (`rig`).
+        streams: Streams of the rig, whose counters each run has from its opening on.
         clock: Clock of host time.
         in_step: Wait until a run's start and end are on disk, for a twin with simulated time.
 
@@ -73,6 +73,7 @@ class ExperimentFolder:
         *,
         manifest: RunManifest,
         profiles: Mapping[str, tuple[str, str]],
+        streams: Collection[Stream] = (),
         plan: str = "",
         clock: Clock = SYSTEM_CLOCK,
         in_step: bool = False,
@@ -81,6 +82,7 @@ class ExperimentFolder:
         self._plan = plan
         self._manifest = manifest
         self._profiles = profiles
+        self._counts = StreamCounts(streams, clock)
         self._clock = clock
         self._in_step = in_step
         self._journal = JournalWriter(data)
@@ -114,17 +116,16 @@ class ExperimentFolder:
             self._start = start
 
         self._require_working()
+        self._counts.restart()
         self._put(open_now, wait=True)
 
     def write(self, readings: Readings, batch: Batch) -> None:
-        """Queue the raw samples for the run's log; see `RunSink.write`.
+        """Queue the raw samples of a batch for the run's log, and what is counted in between.
 
-        Args:
-            readings: Ignored: the readings follow from the raw samples.
-            batch: Batch whose raw samples of each stream are written.
+        The `readings`, which follow from the raw samples, are ignored; see `RunSink.write`.
         """
         del readings
-        raw = batch.raw
+        raw, counted = batch.raw, self._counts.due()
 
         def write_now() -> None:
             """Write the samples to the open run, if any; called in the writing thread."""
@@ -132,6 +133,8 @@ class ExperimentFolder:
                 for stream, samples in raw.items():
                     if samples:
                         self._recorder.write(stream, samples)
+                for stream, counters in counted.items():
+                    self._recorder.count(stream, counters)
 
         self._require_working()
         self._put(write_now)
@@ -148,7 +151,8 @@ class ExperimentFolder:
         Raises:
             SinkFailed: The queue is full; in simulated time also if writing failed.
         """
-        self._put(lambda: self._close_now(verdict, reason), wait=True)
+        counted = self._counts.now()
+        self._put(lambda: self._close_now(verdict, reason, counted), wait=True)
 
     def event(self, kind: str, text: str) -> None:
         """Queue an event for the journal and the open run's log, if any, also after a failure.
@@ -231,9 +235,8 @@ class ExperimentFolder:
         again = 1
         while True:
             recorder = RunRecorder(
-                self._data, manifest=manifest, profiles=self._profiles,
-                clock=self._clock,
-            )  # fmt: skip
+                self._data, manifest=manifest, profiles=self._profiles, clock=self._clock
+            )
             try:
                 return recorder.__enter__()
             except AlreadyExists:
@@ -241,7 +244,9 @@ class ExperimentFolder:
                 label = f"{manifest.label.partition(' again')[0]} again {again}"
                 manifest = replace(manifest, label=label)
 
-    def _close_now(self, verdict: PointVerdict | None, reason: str) -> None:
+    def _close_now(
+        self, verdict: PointVerdict | None, reason: str, counted: Mapping[str, Counters]
+    ) -> None:
         """Write the verdict with the end record, and the journal's entry of the point.
 
         A point whose recorder failed, also while it closed, is not accepted, and the failure is
@@ -250,6 +255,8 @@ class ExperimentFolder:
         recorder, self._recorder = self._recorder, None
         if recorder is None or self._start is None:
             return
+        for stream, counters in counted.items():
+            recorder.count(stream, counters)
         start, point = self._start, self._start.point
         kept = recorder.failure is None
         accepted = verdict is not None and verdict.accepted and kept
@@ -295,10 +302,7 @@ class ExperimentFolder:
             raise SinkFailed(f"the data cannot be saved: {self._failure}")
 
     def _fail(self, error: BaseException) -> None:
-        """Store the first failure as text, for the acquiring thread, which then stops the rig.
-
-        Later failures are ignored.
-        """
+        """Store the first failure as text, for the acquiring thread, which then stops the rig."""
         if self._failure is None:
             self._failure = " ".join(f"{type(error).__name__}: {error}".split())
 

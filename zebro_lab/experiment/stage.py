@@ -74,7 +74,7 @@ def run_experiment(
                 watcher.notice(notice)
             folder = ExperimentFolder(
                 request.data, plan=journal.plan, manifest=_manifest(plan, rig),
-                profiles=rig.profiles, clock=rig.clock, in_step=rig.fast,
+                profiles=rig.profiles, streams=rig.bench.streams, clock=rig.clock, in_step=rig.fast,
             )  # fmt: skip
             with _recording(folder, request.data, control):
                 for notice in finished.notices:

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Final
 
 from rig.acquisition import Acquisition, Device
-from rig.device import Counters, Sample
+from rig.clock import Clock
+from rig.device import Counters, Sample, Stream
 from zebro_lab.recording.recorder import RunRecorder
 
 COUNT_EVERY: Final = 1.0
@@ -151,6 +152,39 @@ class StreamWatch:
                 for reader in self._readers.values():
                     reader.end_at(self._began + self._duration)
         return self._began
+
+
+class StreamCounts:
+    """Counters of streams for one run of several, from its opening on.
+
+    It is used in the thread that reads the streams, between two reads.
+
+    Args:
+        streams: The streams.
+        clock: Clock of host time.
+    """
+
+    def __init__(self, streams: Iterable[Stream], clock: Clock) -> None:
+        self._streams = tuple(streams)
+        self._clock = clock
+        self.restart()
+
+    def restart(self) -> None:
+        """Count from now on."""
+        self._opened = [stream.counters for stream in self._streams]
+        self._told = self._clock.now()
+
+    def now(self) -> Mapping[str, Counters]:
+        """Return what each stream has counted so far, by its name."""
+        self._told = self._clock.now()
+        return {
+            stream.name: stream.counters.since(opened)
+            for stream, opened in zip(self._streams, self._opened, strict=True)
+        }
+
+    def due(self) -> Mapping[str, Counters]:
+        """Return the same where `COUNT_EVERY` has passed since the last time; else nothing."""
+        return self.now() if self._clock.now() - self._told >= COUNT_EVERY else {}
 
 
 def reading_failure(readers: Mapping[str, Acquisition]) -> str | None:

@@ -269,9 +269,9 @@ def _breakable(path: object) -> Markup:
     return Markup("/<wbr>").join(str(path).split("/"))
 
 
-def _count(run: ReportedRun, topic: str) -> str:
-    """Format the number of messages that a run recorded on a topic; a dash if it has none."""
-    return number(run.recorded, "streams", topic, file=f"{run.folder}/{MANIFEST_FILE}")
+def _count(run: ReportedRun, *keys: str) -> str:
+    """Format a number of samples in a run's manifest, by its key path; a dash if it has none."""
+    return number(run.recorded, *keys, file=f"{run.folder}/{MANIFEST_FILE}")
 
 
 def _pictures(part: ReportPart) -> list[Picture]:

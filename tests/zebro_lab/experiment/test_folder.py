@@ -2,23 +2,32 @@
 """Each point is a run folder; whatever fails, the discs stop and the journal says why."""
 
 import contextlib
+import itertools
 import json
 import queue
 import threading
 import time
+from collections import Counter
 from contextlib import contextmanager
+from dataclasses import asdict
 
+import numpy as np
 import pytest
 
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
+from rig.device import Counters
 from rig.errors import RigError
 from rig.experiment.control import Control
 from rig.experiment.sink import SinkFailed
 from rig.experiment.supervision import supervised
+from rig.slip_rig.simulated_board import SimulatedBoard
+from support.experiment_plans import short_plan
+from support.logs import by_topic
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment import folder as experiment_folder
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter
+from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.folder import find_runs
 from zebro_lab.runs.manifest import RunManifest, read_manifest
@@ -62,6 +71,63 @@ def test_refused_attempts_are_kept_and_left_out(lab, plan, tmp_path):
     runs = find_runs(tmp_path / "data")
     assert len(runs) == 18
     assert all("off its set-point" in read_manifest(r).excluded["why"] for r in runs)
+
+
+class Bridge(SimulatedBoard):
+    """A board whose line loses, repeats and exchanges frames, and that notes which."""
+
+    def __init__(self, *args, shares, **options):
+        super().__init__(*args, **options)
+        self.lost, self.repeated = [], []
+        self._shares, self._draws = shares, np.random.default_rng(5)
+
+    def _frames(self, due):
+        first, out = self._number + 1, []
+        for number, frame in enumerate(super()._frames(due), first):
+            drop, twice, late = map(int, self._draws.random(3) < self._shares)
+            numbers = [number for number, _ in out[-2:]]
+            if drop:
+                self.lost.append(number)
+            elif late and numbers in ([number - 1], [number - 2, number - 1]):
+                out.insert(-1, (number, frame))  # so that the one before comes after it
+                self.lost.append(number - 1)
+                self.repeated.append(number - 1)
+            else:
+                out += [(number, frame)] * (1 + twice)
+                self.repeated += [number] * twice
+        return [frame for _, frame in out]
+
+
+@pytest.mark.parametrize(
+    "shares", [(0.0, 0.0, 0.0), (0.01, 0.0, 0.0), (0.3, 0.0, 0.0), (0.02, 0.05, 0.05)]
+)
+def test_a_run_counts_what_the_bridge_lost_repeated_and_exchanged(
+    lab, tmp_path, monkeypatch, shares
+):
+    bridges = []
+
+    def bridge(*args, **options):
+        bridges.append(Bridge(*args, shares=shares, **options))
+        return bridges[-1]
+
+    monkeypatch.setattr("zebro_lab.experiment.opened_rig.SimulatedBoard", bridge)
+    plan = short_plan(tmp_path, duration="2.5")
+    assert lab.run(plan, tmp_path / "data").completed
+    (sent,) = bridges
+    for run in find_runs(tmp_path / "data"):
+        numbers = read_raw_log(run / "log.mcap").streams["/board/raw"].sequence
+        missed = set(sent.lost)
+        before = next(n for n in itertools.count(numbers[0] - 1, -1) if n not in missed)
+        during = Counter(lost=0, repeated=0)
+        for what in ("lost", "repeated"):
+            during[what] = sum(before < number <= numbers[-1] for number in getattr(sent, what))
+        counters = read_manifest(run).counters["board"]
+        assert counters == asdict(Counters(received=len(numbers), **during)) | {"dropped": 0}
+        with (run / "log.mcap").open("rb") as log:
+            told = [found for _, found in by_topic(log)["/board/counters"]]
+        assert len(told) >= 3
+        assert [told[-1].received, told[-1].lost] == [len(numbers), during["lost"]]
+        assert 0 < told[0].received < len(numbers) / 2
 
 
 PATIENCE = 30.0

@@ -17,6 +17,7 @@ def walk(tmp_path) -> Path:
     run = tmp_path / "run"
     write_json(run / "run.json", {
         "kind": "walk", "label": HOSTILE, "source": "sim:robot", "streams": {"/legs/raw": 1234},
+        "counters": {"legs": {"received": 1234, "lost": 56, "dropped": 7}},
     })  # fmt: skip
     rows = {"prediction": metrics(rng), "stand still": {**metrics(rng), "radius_m": None}}
     imu = {f"{a}_{k}_deg": float(rng.uniform(0, 1)) for a in ("roll", "pitch")

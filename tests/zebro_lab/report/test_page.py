@@ -138,6 +138,12 @@ def test_legs_and_floor_have_the_units_and_shares_of_the_printed_table(walk):
     assert "Mounted wrong: leg 2 wrong" in words
 
 
+def test_what_a_run_lost_and_dropped_stands_beside_its_samples(walk):
+    found = {attrs["data-key"]: text for attrs, text in made(walk).numbers}
+    assert found["/streams/~1legs~1raw"] == "1234"
+    assert (found["/counters/legs/lost"], found["/counters/legs/dropped"]) == ("56", "7")
+
+
 WITHIN = {"poses": 14.0, "coverage50_x": 0.5, "coverage90_x": 1.0, "coverage95_yaw": 13 / 14}
 
 

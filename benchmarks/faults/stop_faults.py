@@ -45,6 +45,8 @@ ROWS: Final = (
     Row("terminal closed", "hang up", "", "", 1, True),
     Row("SIGKILL (the board's watchdog stops)", "signal", "SIGKILL", "", -9),
     Row("SIGKILL, drives (theirs do)", "signal", "SIGKILL", "", -9, rig="drives"),
+    Row("SIGSTOP (the board's watchdog stops)", "signal", "SIGSTOP", "watchdog"),
+    Row("SIGSTOP, drives (theirs do)", "signal", "SIGSTOP", "watchdog", rig="drives"),
     _guard("normal force", "normal force", "normal force is"),
     _guard("traction force", "traction force", "traction force is"),
     _guard("silence of the board", "silence", "'board' sent nothing"),

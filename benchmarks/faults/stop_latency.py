@@ -6,7 +6,8 @@ python -m benchmarks.faults.stop_latency [TRIALS] [ROW...]
 Each trial is a `zebro-lab rig run` on a terminal of its own, with a twin in another process whose
 discs turn at 12 rad/s while a point is recorded. Latency counts from the fault's first byte, for
 guards from when the first sample beyond the limit was due, to when the twin has the whole stop
-command: the first set-point of the ramp, or the command to de-energise both drives. Apart from it
+command: the first set-point of the ramp, or the command to de-energise both drives; after SIGKILL
+and SIGSTOP, to when the watchdog stops them. Apart from it
 the time to rest. The last line on the terminal, exit code and last line of the journal must agree.
 Trials that the machine ended before their fault came are made again. These, trials that ended for
 another reason, and whatever is wrong, are told on standard error.
@@ -42,6 +43,8 @@ SETTLED: Final = (0.8, 1.2)
 """When the fault comes after a point's recording began: a random time between these [s]."""
 BETWEEN_KEYS: Final = 0.05
 """A quick typist's; the last key is the one whose latency counts [s]."""
+HELD: Final = 1.5
+"""How long a program is held that SIGSTOP holds: until its discs stand [s]."""
 SLOWEST_START: Final = 60.0
 LONGEST_END: Final = 30.0
 DISK: Final = 80 << 20
@@ -168,7 +171,7 @@ def cause(row: Row, lab: Lab, twin: Twin, data: Path) -> float:
 
 def stop_time(row: Row, seen: Seen, since: float) -> float:
     """Return when the first stop command after the fault was received whole; NaN without one."""
-    if row.what == "SIGKILL":
+    if row.what in ("SIGKILL", "SIGSTOP"):
         return seen.expired_at or np.nan
     for at, leg, both in seen.commands:
         if at > since and (both or (row.ramps and leg < TOP_SPEED - 1e-3)):
@@ -239,6 +242,9 @@ def try_once(row: Row, rng: np.random.Generator) -> Trial:
         at = cause(row, lab, twin, data)
         if row.what == "\x03" and lab.watch(lambda: "HOLDING" in lab.output, LONGEST_END):
             lab.signal(signal.SIGTERM)
+        if row.what == "SIGSTOP":
+            time.sleep(HELD)
+            lab.signal(signal.SIGCONT)
         problems = [] if lab.wait(LONGEST_END) is not None else ["it did not end"]
         time.sleep(1.0 if row.code < 0 else 0.3)  # until the discs truly stand
         seen = twin.seen()

@@ -52,7 +52,7 @@ class Seen:
         fault_at: When the first sample beyond a limit was due; None before it.
         commands: Time, set-point of the leg disc, and whether both drives are told to stop.
         speeds: Time and the larger true speed of both discs.
-        expired_at: When the watchdog stopped the discs; None where it did not.
+        expired_at: When the watchdog last stopped the discs; None where it did not.
     """
 
     fault_at: float | None
@@ -109,7 +109,7 @@ class PlantedBoard(SimulatedBoard):
         self._log.begin_poll(self._rig)
         before = self._status
         data = super().poll(now, received)
-        if self._status and not before and self._log.expired_at is None:
+        if self._status and not before:
             self._log.expired_at = time.monotonic()
         return b"" if self._log.fault == "silence" else data
 
@@ -197,7 +197,7 @@ class PlantedDrives(SimulatedDrives):
         before = self._told_to_stop()
         super().poll(now)
         if self._told_to_stop() and not before and not self._log.commands[-1][2]:
-            self._log.expired_at = self._log.expired_at or time.monotonic()
+            self._log.expired_at = time.monotonic()
 
     def _told_to_stop(self) -> bool:
         return all(axis.state == AxisState.IDLE for axis in self._axes.values())

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from rig.clock import Clock
-from rig.errors import DeviceFault, NotAtRest, RigError
+from rig.errors import DeviceFault, NotAtRest, RigError, RigTimeout
 from rig.experiment.bench import Bench
 from rig.experiment.control import Control
 from rig.experiment.guards import RigGuards
-from rig.experiment.plan import RunLimits, ground_speed, rig_limits
+from rig.experiment.plan import WATCHDOG_PROOF, RunLimits, ground_speed, rig_limits
 from rig.experiment.readings import Batch
 from rig.experiment.rest import DISCS, prove_rest
 from rig.experiment.sink import RunSink
@@ -25,6 +25,9 @@ PERIOD: Final = 0.004
 """Polling period: waking up for each of 7,000 samples per second is several times slower [s]."""
 FAULT_CLEAR_TIME: Final = 0.5
 """Time after arming in which a reported fault may be one from before arming [s]."""
+WATCHDOG_LIMIT: Final = 0.5
+"""Time within which watchdogs that are not fed must be seen to stop the drives: 0.25 s, to which
+they may be set, 0.1 s between an ODrive's heartbeats, the rest for link and host [s]."""
 SPACE_CHECK_PERIOD: Final = 0.1
 """Interval between checks whether data can still be stored [s]."""
 
@@ -110,17 +113,22 @@ class GuardedAcquisition:
         return self._clock.now() < self._ramp.start + self._ramp.duration
 
     def arm(self) -> None:
-        """Energise at standstill, wait until no fault is reported, and start the silence guards.
+        """Energise at standstill, prove the watchdogs, and start the silence guards.
+
+        Watchdogs are proved by letting them expire once, unless `guards_off` has `WATCHDOG_PROOF`.
 
         Raises:
-            RigError: A drive does not energise, or a fault is still reported after
-                `FAULT_CLEAR_TIME`; both drives have been de-energised.
+            RigError: A drive does not energise, a fault is still reported after
+                `FAULT_CLEAR_TIME`, or a watchdog does not stop its drive within `WATCHDOG_LIMIT`;
+                both drives have been de-energised.
         """
         self._bench.read()  # discard what is in buffers
         self.energised = True
         try:
-            self._bench.arm()
-            self._await_health()
+            self._energise()
+            if WATCHDOG_PROOF not in self._limits.guards_off:
+                self._let_watchdogs_expire()
+                self._energise()
         except BaseException:
             self.disarm()
             raise
@@ -268,8 +276,35 @@ class GuardedAcquisition:
             self._check_space_at = now + SPACE_CHECK_PERIOD
             self._sink.require_room(self._limits.free_space)
 
-    def _await_health(self) -> None:
-        """Read until no fault is reported; after `FAULT_CLEAR_TIME` raise its `DeviceFault`."""
+    def _let_watchdogs_expire(self) -> None:
+        """Feed no watchdog until all have stopped their drives, which then are de-energised.
+
+        Raises:
+            RigTimeout: One was not seen to stop its drive within `WATCHDOG_LIMIT`.
+        """
+        motors, began = self._bench.motors, self._clock.now()
+        motors.feeding = False
+        try:
+            while running := motors.unexpired():
+                self._clock.sleep(self._period)
+                self._bench.read()
+                if (waited := self._clock.now() - began) > WATCHDOG_LIMIT:
+                    raise RigTimeout(
+                        f"the watchdog of the {running}, to which nothing was sent, did not stop "
+                        "it", waited=waited, advice=f"expected within {WATCHDOG_LIMIT:g} s, and "
+                        f"nothing has moved: {motors.watchdog_advice}"
+                    )  # fmt: skip
+        finally:
+            motors.feeding = True
+        self._bench.disarm()
+
+    def _energise(self) -> None:
+        """Energise, and read until no fault is reported.
+
+        Raises:
+            RigError: A drive does not energise, or a fault is reported after `FAULT_CLEAR_TIME`.
+        """
+        self._bench.arm()
         end = self._clock.now() + FAULT_CLEAR_TIME
         while True:
             self._clock.sleep(self._period)

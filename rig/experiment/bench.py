@@ -39,7 +39,8 @@ class Bench(ABC):
     Attributes:
         profile: Profile of the rig.
         source: Origin of the samples: `real` or `sim:WHAT`.
-        streams: Streams of the devices, for their counters.
+        motors: Driver of both discs.
+        streams: Streams of the devices, for their counters, the motors' first.
         watched: Names of the devices, and of requested answers, that are checked for silence.
     """
 
@@ -49,7 +50,7 @@ class Bench(ABC):
         self.profile = profile
         self.source = motors.source
         self.streams: tuple[Stream, ...] = (motors, *sensors)
-        self._motors = motors
+        self.motors = motors
         self._leg: Drive = motors.leg
         self._ground: Drive = motors.ground
         self._time = HostTime()
@@ -106,7 +107,7 @@ class Bench(ABC):
         Raises:
             DeviceFault: A drive or the board reports an error, or an armed drive left closed loop.
         """
-        self._motors.require_healthy()
+        self.motors.require_healthy()
 
     def __enter__(self) -> Self:
         with ExitStack() as stack:

@@ -27,6 +27,9 @@ OFF_ABOVE: Final = {
 """Limits above which a guard counts as off, in the unit of `LIMIT_UNITS`; for `speed_error` it is
 half of `PointGrid.omega_leg`."""
 
+WATCHDOG_PROOF: Final = "watchdog_proof"
+"""Name in `RunLimits.guards_off` of the trial of the watchdogs, which no limit belongs to."""
+
 
 @dataclass(frozen=True)
 class PointGrid:
@@ -159,7 +162,7 @@ class RunLimits:
         temperature_celsius: Highest temperature of a drive or its motor; None where the plan does
             not limit it [degC].
         guards_off: Names of limits that a person has explicitly set so high that they have no
-            effect.
+            effect; and `WATCHDOG_PROOF`, where watchdogs are not to be tried.
     """
 
     speed: float
@@ -184,7 +187,8 @@ class RunLimits:
     def guards_off_text(self) -> str:
         """Text with the names of `guards_off` and their limits; empty where no guard is off."""
         return ", ".join(
-            f"{name} ({getattr(self, name):g} {LIMIT_UNITS[name]})" for name in self.guards_off
+            f"{name} ({getattr(self, name):g} {LIMIT_UNITS[name]})" if name in LIMIT_UNITS else name
+            for name in self.guards_off
         )
 
 

@@ -285,7 +285,8 @@ class _Run:
         zero = self._zero or UNLOADED
         settled = settle(self._acquire, self._plan, point, zero)
         self._recording = True  # set before opening, which may fail after the run has begun
-        self._sink.open_run(RunStart(point, attempt, self._clock.now(), zero))
+        off = self._plan.limits.guards_off_text
+        self._sink.open_run(RunStart(point, attempt, self._clock.now(), zero, off))
         readings = record(self._acquire, self._sink, self._plan, point, zero, clock=self._clock)
         verdict = judge_point(
             readings, point, self._plan.accept, settled=settled,

@@ -25,12 +25,14 @@ class RunStart:
         attempt: Number of the attempt, from 1.
         time: Host time at which the run begins, with an arbitrary origin [s].
         zero: Zero of the load cell that is subtracted from the readings.
+        guards_off: Guards that are off, with their limits, as text; empty where none is.
     """
 
     point: Point
     attempt: int
     time: float
     zero: Zero
+    guards_off: str = ""
 
 
 class RunSink(Protocol):

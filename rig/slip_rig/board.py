@@ -16,7 +16,8 @@ from rig.safety import require_within
 from rig.slip_rig.profile import BoardProfile
 
 WATCHDOG_EXPIRED: Final = 1
-"""Status bit: the board's watchdog expired and stopped both discs; a stop command clears it."""
+"""Status bit: the board's watchdog expired and stopped both discs, or the board was switched on and
+takes no speeds yet; a stop command clears it."""
 
 
 def board_body(profile: BoardProfile) -> struct.Struct:
@@ -49,7 +50,13 @@ class RigBoard(PacketStream):
     Attributes:
         leg: Drive of the leg disc.
         ground: Drive of the ground disc.
+        feeding: Whether `read` feeds the watchdog of an armed board.
     """
+
+    watchdog_advice: Final = (
+        "0.1 to 0.25 s after the last speed command the board's firmware is to stop both discs and "
+        f"to report status {WATCHDOG_EXPIRED:#x}"
+    )
 
     def __init__(
         self,
@@ -67,16 +74,19 @@ class RigBoard(PacketStream):
         self.limits = limits
         self.leg = BoardDrive(self, "leg")
         self.ground = BoardDrive(self, "ground")
+        self.feeding = True
         self._speeds = {"leg": 0.0, "ground": 0.0}
         self._armed: set[str] = set()
         self._feed_at = -math.inf
         self._status = 0
+        self._released = False  # whether a sample has shown that the board obeyed `_arm`
 
     def read(self, timeout: float) -> list[Sample]:
         """Return all samples that have arrived, waiting at most `timeout` for the first [s].
 
         Counts are normal force, traction, leg and ground speed; status is the board's. While a disc
-        is armed, both speeds are sent every `feed_interval`, which feeds the watchdog.
+        is armed and `feeding` True, both speeds are sent every `feed_interval`, which feeds the
+        watchdog.
 
         Raises:
             DeviceMismatch: As `PacketStream.read`.
@@ -84,7 +94,7 @@ class RigBoard(PacketStream):
         """
         end = self._clock.now() + timeout
         while True:
-            if self._armed and self._clock.now() >= self._feed_at:
+            if self.feeding and self._armed and self._clock.now() >= self._feed_at:
                 self.command_speeds()
             left = max(end - self._clock.now(), 0.0)
             samples = super().read(min(left, self.profile.feed_interval))
@@ -104,6 +114,12 @@ class RigBoard(PacketStream):
                 status=self._status,
             )
 
+    def unexpired(self) -> str:
+        """Return the board's status as text; empty where its watchdog has expired since `arm`."""
+        if not self._released:
+            return "board (no sample without status 0x1 since it was armed)"
+        return "" if self._status & WATCHDOG_EXPIRED else f"board (status {self._status:#x})"
+
     def command_speeds(self) -> bool:
         """Send the latest commanded speeds of both discs; return whether the link took them."""
         self._feed_at = self._clock.now() + self.profile.feed_interval
@@ -116,6 +132,7 @@ class RigBoard(PacketStream):
         """Move the last count of a sample, the board's status, to its `status`, and remember it."""
         *counts, status = sample.counts
         self._status = int(status)
+        self._released |= not self._status & WATCHDOG_EXPIRED
         return sample._replace(counts=tuple(counts), status=self._status)
 
     def _arm(self, disc: str) -> None:
@@ -123,6 +140,7 @@ class RigBoard(PacketStream):
         if not self._armed:
             self.send(Kind.STOP)  # releases a board whose watchdog had stopped it
             self._speeds = dict.fromkeys(self._speeds, 0.0)
+            self._released = False
         self._armed.add(disc)
         self._status = 0
 

@@ -74,6 +74,8 @@ ERRORS: Final[dict[str, dict[int, str]]] = {
     },
 }
 """Meaning of the bits of an axis error, by firmware."""
+WATCHDOG_EXPIRED: Final = {"0.5": 0x800, "0.6": 0x1000000}
+"""Bit of the axis error that an expired watchdog sets, by firmware."""
 
 
 def can_id(node: int, command: Command) -> int:

@@ -27,6 +27,7 @@ from rig.slip_rig.can_simple import (
     PASS_THROUGH,
     TEMPERATURES,
     VELOCITY_CONTROL,
+    WATCHDOG_EXPIRED,
     AxisState,
     Command,
     can_id,
@@ -58,7 +59,13 @@ class DriveBus(LinkedStream[CanLink]):
     Attributes:
         leg: Drive of the leg disc.
         ground: Drive of the ground disc.
+        feeding: Whether `read` feeds the watchdogs of armed drives; while False nothing is sent.
     """
+
+    watchdog_advice: Final = (
+        "on each drive set axis.config.watchdog_timeout to 0.1 to 0.25 s and "
+        "axis.config.enable_watchdog to True, and save its configuration"
+    )
 
     def __init__(
         self,
@@ -73,6 +80,7 @@ class DriveBus(LinkedStream[CanLink]):
         self.limits = limits
         self.leg = OdriveDrive(self, "leg disc", profile.leg)
         self.ground = OdriveDrive(self, "ground disc", profile.ground)
+        self.feeding = True
         self._axes = {drive.place.node: drive for drive in (self.leg, self.ground)}
         self._pending: list[Sample] = []  # arrived while another answer was awaited
         self._feed_at = -math.inf
@@ -94,15 +102,16 @@ class DriveBus(LinkedStream[CanLink]):
     def read(self, timeout: float) -> list[Sample]:
         """Return samples of both drives by host time, waiting at most `timeout` for the first [s].
 
-        Feeds the watchdogs of armed drives while it waits.
+        Feeds the watchdogs of armed drives while it waits, unless `feeding` is False.
 
         Raises:
             RigTimeout: The bus takes no frame.
         """
         end = self._clock.now() + timeout
         while True:
-            self._feed()
-            self._request_due_temperatures()
+            if self.feeding:
+                self._feed()
+                self._request_due_temperatures()
             left = max(end - self._clock.now(), 0.0)
             samples = self._take(min(left, self.profile.feed_interval))
             if samples or left <= 0:
@@ -137,6 +146,20 @@ class DriveBus(LinkedStream[CanLink]):
                     f"{axis.state} (expected {int(AxisState.CLOSED_LOOP)})",
                     status=axis.state,
                 )
+
+    def unexpired(self) -> str:
+        """Name the drives that an expired watchdog has not stopped, by their last heartbeats.
+
+        Returns:
+            Each drive's name, axis state and error as text; empty where both left closed-loop
+            control and report an expired watchdog.
+        """
+        expired = WATCHDOG_EXPIRED[self.profile.firmware]
+        return " and of the ".join(
+            f"drive of the {axis.name} (axis state {axis.state}, error {axis.error:#x})"
+            for axis in self._axes.values()
+            if axis.state == AxisState.CLOSED_LOOP or not axis.error & expired
+        )
 
     def __enter__(self) -> Self:
         super().__enter__()
@@ -241,7 +264,7 @@ class OdriveDrive:
 
     Attributes:
         armed: Whether the drive was commanded to closed loop, and not to idle since.
-        state: Axis state of the last heartbeat; 0 before the first.
+        state: Axis state of the last heartbeat; 0 before the first, and from `arm` to the next one.
         error: Axis error of the last heartbeat; 0 without a fault, and from `arm` to the next one.
         temperatures: Temperatures received since the last `take_temperatures` [degC].
     """
@@ -269,7 +292,7 @@ class OdriveDrive:
         )
         self.send_velocity()  # before closed loop: the drive would else begin at its last set-point
         self._send(Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.CLOSED_LOOP))
-        self.armed, self.error = True, 0
+        self.armed, self.state, self.error = True, 0, 0
         try:
             self._bus._wait(lambda: self.state == AxisState.CLOSED_LOOP, timeout,
                             f"drive of the {self.name} did not enter closed-loop control",

@@ -16,6 +16,7 @@ from rig.slip_rig.can_simple import (
     HEARTBEAT,
     INPUT_VELOCITY,
     TEMPERATURES,
+    WATCHDOG_EXPIRED,
     AxisState,
     Command,
     can_id,
@@ -28,7 +29,6 @@ HEARTBEAT_INTERVAL: Final = 0.05
 """Interval between the heartbeats of an axis [s]."""
 ESTIMATE_INTERVAL: Final = 0.01
 """Interval between the position and velocity frames of an axis [s]."""
-WATCHDOG_EXPIRED: Final = {"0.5": 0x800, "0.6": 0x1000000}
 EMERGENCY_STOP: Final = {"0.5": 0x4000, "0.6": 0x2}
 
 

@@ -146,7 +146,7 @@ def test_after_a_fault_the_discs_rest_the_reason_is_kept_and_resume_ends_the_pla
 ):
     plan = short_plan(tmp_path, loads="[4.0]", slips="[0.1, 0.3, 0.6]", silence=GUARDED, **LENIENT)
     data = tmp_path / "data"
-    request = partial(RigRunRequest, plan, "rig-odrive-netft@sim", data)
+    request = partial(RigRunRequest, plan, "rig-odrive-netft@sim", data, no_watchdog_proof=True)
     rested = []
     leave = CanLink.close
 

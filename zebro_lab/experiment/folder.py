@@ -114,6 +114,8 @@ class ExperimentFolder:
             """Open the run folder; called in the writing thread."""
             self._recorder = self._enter(manifest)
             self._start = start
+            if start.guards_off:
+                self._recorder.event(f"guards off: {start.guards_off}")
 
         self._require_working()
         self._counts.restart()

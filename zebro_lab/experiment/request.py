@@ -52,6 +52,9 @@ class RigRunRequest:
     reset_emergency: Annotated[
         bool, Option("--reset-emergency", help="Reset the emergency stop latched in DIR.")
     ] = False
+    no_watchdog_proof: Annotated[
+        bool, Option("--no-watchdog-proof", help="Do not try the drives' watchdogs before motion.")
+    ] = False
     fast: Fast = False
     seed: Seed = 0
 

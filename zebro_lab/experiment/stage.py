@@ -5,6 +5,7 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -12,7 +13,7 @@ from rig.errors import InUse
 from rig.exclusive import folder_lock
 from rig.experiment.control import Control
 from rig.experiment.control_server import ControlServer, send_command
-from rig.experiment.plan import Plan
+from rig.experiment.plan import WATCHDOG_PROOF, Plan
 from rig.experiment.run import RunOutcome, run_plan
 from rig.experiment.sink import ExperimentWatcher
 from rig.experiment.supervision import signal_stops, supervised
@@ -63,6 +64,9 @@ def run_experiment(
             de-energised.
     """
     plan = read_plan(request.plan)
+    if request.no_watchdog_proof:
+        off = (*plan.limits.guards_off, WATCHDOG_PROOF)
+        plan = replace(plan, limits=replace(plan.limits, guards_off=off))
     with opened_rig(
         request.rig, seed=request.seed, run=_run_name(request), fast=request.fast
     ) as rig:

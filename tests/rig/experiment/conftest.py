@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A board's twin on a clock turned by hand, and a short plan for it."""
+"""Twins of a board, and of drives, on a clock turned by hand, and a short plan for them."""
 
 import copy
 import tomllib
@@ -26,8 +26,10 @@ from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from support.memory_sink import MemorySink
+from support.stepped_drives import stepped_drives
 
 PROFILE = load_rig_profile("rig-board-serial")
+DRIVES_PROFILE = load_rig_profile("rig-odrive-netft")
 
 PLAN = """
 schema = 1
@@ -82,10 +84,10 @@ def plan(*, drop=None, **changes) -> Plan:
 
 @dataclass
 class Twin:
-    """A rig, its bench, and what a run on it needs."""
+    """A rig, its bench, and what a run on it needs; `board` may be the drives."""
 
     rig: SimulatedRig
-    board: SimulatedBoard
+    board: object
     bench: object
     clock: ManualClock
     control: Control
@@ -131,10 +133,14 @@ class At(MemorySink):
             self.action()
 
 
-def twin(seed=0, *, watchdog=0.2) -> Twin:
+def twin(seed=0, *, kind="board", watchdog=0.2) -> Twin:
     rng = np.random.default_rng(seed)
     rig = SimulatedRig(plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng)
     clock = ManualClock()
+    if kind == "drives":
+        rig.command("leg", 0.0)
+        drives, devices = stepped_drives(rig, DRIVES_PROFILE, clock, watchdog=watchdog)
+        return Twin(rig, drives, make_bench(devices), clock, Control(), MemorySink())
     board = SimulatedBoard(rig, profile=PROFILE.board, rng=rng, watchdog=watchdog)
     driver = RigBoard(
         MemoryLink(board, clock=clock), profile=PROFILE.board, limits=PROFILE.limits, clock=clock

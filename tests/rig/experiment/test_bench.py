@@ -3,6 +3,7 @@
 
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from rig.errors import DeviceFault, LimitExceeded, RigTimeout, StaleReading, Unr
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
+from rig.experiment.plan import WATCHDOG_PROOF
 from rig.links.can import CanLink
 from rig.slip_rig.can_simple import AxisState, Command, split_id
 from rig.slip_rig.decode import measured_slip
@@ -48,8 +50,9 @@ def standing(lab, monkeypatch, **limits):
         simulated_rig_devices(PROFILE, rig, rng=rng, watchdog=WATCHDOG) as devices,
         make_bench(devices) as bench,
     ):
+        wanted = lab["plan"](limits=PATIENT | limits).limits
         acquire = GuardedAcquisition(
-            bench, limits=lab["plan"](limits=PATIENT | limits).limits, control=Control(),
+            bench, limits=replace(wanted, guards_off=(WATCHDOG_PROOF,)), control=Control(),
             sink=MemorySink(), clock=SYSTEM_CLOCK,
         )  # fmt: skip
         yield acquire, rig, found[SimulatedDrives], found[SimulatedLoadCell]

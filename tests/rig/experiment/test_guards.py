@@ -73,7 +73,7 @@ SPOILED = {
 @pytest.mark.parametrize(("spoil", "message"), SPOILED.values(), ids=SPOILED)
 def test_records_that_cannot_be_believed_stop_the_discs(lab, monkeypatch, spoil, message):
     twin = lab["twin"]()
-    spoil_records(twin, monkeypatch, spoil, after=2000)
+    spoil_records(twin, monkeypatch, spoil, after=2500)
     with pytest.raises(RigError, match=message):
         twin.run()
     assert twin.at_rest()

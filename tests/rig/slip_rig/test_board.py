@@ -6,6 +6,7 @@ import pytest
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.device import iterate
 from rig.errors import LimitExceeded
+from rig.slip_rig.board import WATCHDOG_EXPIRED
 from rig.slip_rig.decode import decode_board, measured_slip
 from support.board_twins import PROFILE, board, world
 
@@ -42,3 +43,24 @@ def test_a_board_refuses_a_speed_beyond_the_limit():
     stream, _ = board(world())
     with stream, pytest.raises(LimitExceeded, match="ground disc is 99 rad/s"):
         stream.ground.set_speed(99.0)
+
+
+def test_only_a_watchdog_that_expired_since_arming_is_a_proof(monkeypatch):
+    stream, clock = board(world())
+    twin = stream._link._twin
+
+    def hear(duration):
+        list(iterate(stream, duration=duration, clock=clock))
+        return stream.unexpired()
+
+    with stream, monkeypatch.context() as held:
+        held.setattr(twin, "_execute", lambda packet, now: None)  # on the way for long
+        twin._status = WATCHDOG_EXPIRED
+        stream.leg.arm(1.0)
+        assert "no sample" in hear(0.1)
+        held.undo()
+        stream.leg.disarm()
+        stream.leg.arm(1.0)
+        assert "status 0x0" in hear(0.5)
+        stream.feeding = False
+        assert hear(0.25) == ""

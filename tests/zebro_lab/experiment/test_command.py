@@ -11,9 +11,11 @@ from typer.testing import CliRunner
 
 from rig.experiment.run import RunOutcome
 from rig.twins import simulated_rig_devices
+from support.logs import events
 from zebro_lab.experiment.command import experiment_in_numbers
 from zebro_lab.experiment.journal import Journal
 from zebro_lab.main import app
+from zebro_lab.runs.folder import find_runs
 
 
 def zebro_lab(*arguments):
@@ -45,10 +47,29 @@ def test_a_short_run_in_real_time_takes_its_time(short, tmp_path, monkeypatch):
     patient = partial(simulated_rig_devices, watchdog=3.0)
     monkeypatch.setattr("zebro_lab.experiment.opened_rig.simulated_rig_devices", patient)
     began = time.monotonic()
-    result = zebro_lab("run", short, "--rig", "rig-odrive-netft@sim", "--data", tmp_path / "data")
+    options = ["--rig", "rig-odrive-netft@sim", "--data", tmp_path / "data"]
+    result = zebro_lab("run", short, "--no-watchdog-proof", *options)
     assert result.exit_code == 0, result.output
     assert time.monotonic() - began > 1.5
     assert "completed: 2 points finished" in result.output
+
+
+def test_drives_without_a_watchdog_in_time_are_refused_before_motion(short, tmp_path, monkeypatch):
+    slow = partial(simulated_rig_devices, watchdog=5.0)
+    monkeypatch.setattr("zebro_lab.experiment.opened_rig.simulated_rig_devices", slow)
+    result = zebro_lab("run", short, "--rig", "rig-odrive-netft@sim", "--data", tmp_path / "data")
+    assert result.exit_code == 1
+    assert "axis.config.enable_watchdog" in result.output
+    assert not find_runs(tmp_path / "data")
+
+
+def test_a_proof_that_was_left_out_is_kept_in_journal_and_logs(lab, short, tmp_path):
+    data = tmp_path / "data"
+    lab.run(short, data, no_watchdog_proof=True)
+    told = next(entry for entry in lab.journal(data) if entry["kind"] == "guards off")
+    assert "watchdog_proof" in told["text"]
+    for run in find_runs(data):
+        assert any("guards off: " in text and "watchdog_proof" in text for text in events(run))
 
 
 def test_streams_that_a_shell_has_closed_are_no_fault(short, tmp_path):

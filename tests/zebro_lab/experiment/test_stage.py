@@ -161,7 +161,8 @@ class Rig:
 
     def arguments(self, plan):
         rig = f"rig-board-serial@{self.server.port}"
-        return ["rig", "run", str(plan), "--rig", rig, "--data", str(self.data)]
+        run = ["rig", "run", str(plan), "--rig", rig, "--data", str(self.data)]
+        return [*run, "--no-watchdog-proof"]  # this one's is a patient one
 
     def start(self, plan):
         main = "from zebro_lab.main import main; main()"

@@ -133,7 +133,8 @@ class PacketStream(LinkedStream[ByteLink]):
         if self._possible is not None and not self._possible(counts):
             self._refused += 1
             return None
-        sequence = self._tracker.accept(packet.sequence, now)
+        elapsed = self._device_time.since(packet.ticks)
+        sequence = self._tracker.accept(packet.sequence, now, elapsed)
         if sequence is None:
             return None
         return Sample(now, self._device_time.unwrap(packet.ticks), sequence, counts)

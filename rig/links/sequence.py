@@ -8,19 +8,21 @@ from numpy.typing import NDArray
 
 from model.arrays import Array
 
-LATE_WINDOW: Final = 64
-"""Default distance behind the newest number below which a sample is late, not a restart."""
+LATE_WINDOW: Final = 8
+"""Default distance behind the newest number below which a sample is late, not a restart: lines and
+buses keep the order, so that only a bridge may exchange neighbours."""
 SLACK: Final = 64
-"""Jump forward that is always a loss, added to the number that can have been sent [samples]."""
+"""Jump forward that is always a loss, added to twice the number that is due [samples]."""
 
 
 class SequenceTracker:
     """Unwraps the sequence numbers of one stream and counts losses, duplicates and restarts.
 
-    A jump forward counts as a loss up to `SLACK` plus the number of samples that the device can
-    send since the previous read at twice its rate. A longer jump, or one far back, is a restart of
-    the device, after which the number of missing samples is unknown. (The time is not counted from
-    the last sample, because samples of one read may have waited together in a buffer.)
+    A jump forward counts as a loss up to `SLACK` plus twice the number of samples that are due: at
+    the device's rate for the time since the last sample by its own clock; where it sends no time,
+    for all time of the host so far, less those that came (what waited in buffers during a pause
+    comes before the jump). A longer jump, one far back, or one against the device's clock is a
+    restart of the device, after which the number of missing samples is unknown.
 
     Args:
         modulus: Modulus at which the device's numbers wrap.
@@ -44,14 +46,16 @@ class SequenceTracker:
         self._rate = rate
         self._late_window = min(late_window, modulus // 2)
         self._last: int | None = None
-        self._read_time = self._read_before = 0.0
+        self._read_time = self._due = 0.0
 
-    def accept(self, number: int, host_time: float) -> int | None:
+    def accept(self, number: int, host_time: float, elapsed: float | None = None) -> int | None:
         """Unwrap the sequence number of a sample and update the counters.
 
         Args:
             number: Number as the device sent it.
             host_time: Time at which it was read [s].
+            elapsed: Time since the last accepted sample by the device's clock, see
+                `TimeUnwrapper.since`; None where the sample has no device time [s].
 
         Returns:
             The unwrapped number, larger than every earlier one; None where the sample is a
@@ -64,19 +68,20 @@ class SequenceTracker:
         (2, 1)
         """
         if self._last is None:
-            self._last, self._read_time, self._read_before = number, host_time, host_time
+            self._last, self._read_time = number, host_time
             return number
-        if host_time != self._read_time:
-            self._read_time, self._read_before = host_time, self._read_time
-        ahead = (number - self._last) % self._modulus
-        behind = self._modulus - ahead
-        if ahead == 0 or behind < self._late_window:
+        self._due += (self._rate or 0.0) * (host_time - self._read_time)
+        self._read_time = host_time
+        ahead = (number - self._last - 1) % self._modulus + 1  # the same number is a whole turn
+        late = self._modulus - ahead < self._late_window
+        if self._is_restart(ahead, late, elapsed):
+            self.restarted += 1
+        elif late:
             self.repeated += 1
             return None
-        if self._plausible(ahead, host_time - self._read_before):
-            self.lost += ahead - 1
         else:
-            self.restarted += 1
+            self.lost += ahead - 1
+        self._due = max(self._due - ahead, 0.0)
         self._last += ahead
         return self._last
 
@@ -105,21 +110,26 @@ class SequenceTracker:
             if end <= self._modulus and (numbers == np.arange(first, end)).all():
                 accepted = np.arange(self._last + 1, self._last + 1 + len(numbers))
                 self.accept(first, host_time)
+                self._due = max(self._due - len(accepted) + 1, 0.0)
                 self._last = int(accepted[-1])
                 return slice(None), accepted
         one_by_one = [self.accept(number, host_time) for number in numbers.tolist()]
         kept = np.array([number is not None for number in one_by_one], bool)
         return kept, np.array([n for n in one_by_one if n is not None], np.int64)
 
-    def _plausible(self, ahead: int, elapsed: float) -> bool:
-        """Return whether a jump by `ahead` is a loss rather than a restart of the device.
+    def _is_restart(self, ahead: int, late: bool, elapsed: float | None) -> bool:
+        """Return whether a number `ahead` of the last one means a restart, as the class says.
 
-        With a rate, the jump is at most `SLACK` plus twice the samples of the time `elapsed` [s]
-        since the previous read; without one, it is less than half of the modulus.
+        A `late` sample is one by the device's clock too, if that sends its time. Without a rate, a
+        jump forward is a restart from half of the modulus on.
         """
         if self._rate is None:
-            return ahead < self._modulus // 2
-        return ahead <= SLACK + 2 * self._rate * elapsed
+            return not late and ahead >= self._modulus // 2
+        if late:
+            oldest = -2 * self._late_window / self._rate
+            return elapsed is not None and not oldest <= elapsed <= 0
+        due = self._due if elapsed is None else self._rate * elapsed
+        return ahead > SLACK + 2 * due
 
 
 class TimeUnwrapper:
@@ -136,6 +146,19 @@ class TimeUnwrapper:
         self._modulus = modulus
         self._tick = tick
         self._last: int | None = None
+
+    def since(self, ticks: int) -> float:
+        """Compute the time from the last reading to another one, negative if that is older [s].
+
+        It is at most half of the time in which the ticks wrap; before the first reading it is 0.
+
+        >>> clock = TimeUnwrapper(modulus=1000, tick=0.001)
+        >>> clock.unwrap(990), clock.since(4), clock.since(980)
+        (0.99, 0.014, -0.01)
+        """
+        half = self._modulus // 2
+        last = ticks if self._last is None else self._last
+        return ((ticks - last + half) % self._modulus - half) * self._tick
 
     def unwrap(self, ticks: int) -> float:
         """Compute the device time [s] of a reading that is not older than the previous one.

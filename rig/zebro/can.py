@@ -116,10 +116,12 @@ class CanLegs(LeftStill, LinkedStream[CanLink]):
         if not self.profile.possible(tuple(counts)):
             self._refused += 1
             return None
-        sequence = self._tracker.accept(number, now)
+        ticks = None
+        if self._stamp is not None and self._stamp[0] == number:
+            ticks = self._stamp[1]
+        elapsed = None if ticks is None else self._device_time.since(ticks)
+        sequence = self._tracker.accept(number, now, elapsed)
         if sequence is None:
             return None
-        time = None
-        if self._stamp is not None and self._stamp[0] == number:
-            time = self._device_time.unwrap(self._stamp[1])
+        time = None if ticks is None else self._device_time.unwrap(ticks)
         return Sample(now, time, sequence, tuple(counts))

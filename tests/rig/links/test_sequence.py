@@ -53,6 +53,97 @@ def test_samples_that_waited_together_are_not_taken_for_a_restart():
     assert (tracker.lost, tracker.restarted) == (398, 0)
 
 
+class Reader:
+    """Reads numbers and, where the device sends its time, ticks, as the drivers do."""
+
+    def __init__(self, rate, *, timed):
+        self.tracker = SequenceTracker(modulus=1 << 32, rate=rate)
+        self.clock = TimeUnwrapper(modulus=1 << 32, tick=1e-6) if timed else None
+        self.received = 0
+
+    def read(self, numbers, at, *, rate):
+        """Read samples at a host time, taken so many a second since the device was switched on."""
+        for number in numbers:
+            ticks = round(number / rate * 1e6) % (1 << 32)
+            elapsed = None if self.clock is None else self.clock.since(ticks)
+            if self.tracker.accept(number, at, elapsed) is not None:
+                self.received += 1
+                if self.clock is not None:
+                    self.clock.unwrap(ticks)
+
+
+POLL = 0.004
+RATES = st.sampled_from([100.0, 250.0, 1000.0, 7000.0])
+
+
+def follow(reader, numbers, at, *, rate):
+    """Read samples as they come, and return the host time after the last."""
+    each = max(round(rate * POLL), 1)
+    for k in range(0, len(numbers), each):
+        at += len(numbers[k : k + each]) / rate
+        reader.read(numbers[k : k + each], at, rate=rate)
+    return at
+
+
+@given(
+    rate=RATES,
+    pace=st.sampled_from([1.0, 0.999, 0.8, 1.25]),
+    pause=st.floats(0.3, 20.0),
+    waited=st.floats(0.0, 0.9),
+    reads=st.integers(1, 5),
+    before=st.integers(1, 500),
+    timed=st.booleans(),
+)
+def test_a_pause_of_the_host_is_a_loss_of_what_no_buffer_held(
+    rate, pace, pause, waited, reads, before, timed
+):
+    true = rate * (pace if timed else min(pace, 1.0))
+    reader, missed = Reader(rate, timed=timed), round(pause * true)
+    at = follow(reader, list(range(before)), 0.0, rate=true)
+    kept = list(range(before, before + round(waited * missed)))
+    each = len(kept) // reads + 1
+    for k in range(reads):  # what waited comes in one read or in several
+        reader.read(kept[k * each : (k + 1) * each], at + pause + k * POLL, rate=true)
+    live = before + missed + round(reads * POLL * true)
+    follow(reader, list(range(live, live + 300)), at + pause + reads * POLL, rate=true)
+    tracker = reader.tracker
+    assert (tracker.restarted, tracker.repeated) == (0, 0)
+    assert reader.received == before + len(kept) + 300
+    assert tracker.lost == live + 300 - reader.received
+
+
+@given(
+    rate=RATES,
+    before=st.integers(LATE_WINDOW + 1, 1000),
+    first=st.integers(0, 1000),
+    silent=st.floats(0.0, 20.0),
+    timed=st.booleans(),
+)
+def test_a_restart_is_seen_however_short_the_device_had_run(rate, before, first, silent, timed):
+    first = min(first, before - 1 - LATE_WINDOW)  # numbers lost before it are unknown
+    reader = Reader(rate, timed=timed)
+    at = follow(reader, list(range(before)), 0.0, rate=rate)
+    follow(reader, list(range(first, first + 40)), at + silent, rate=rate)
+    tracker = reader.tracker
+    assert (tracker.restarted, tracker.lost, tracker.repeated) == (1, 0, 0)
+    assert reader.received == before + 40
+
+
+def test_the_device_s_clock_tells_a_restart_from_a_late_sample_and_from_a_loss():
+    def after(number, elapsed):
+        tracker = SequenceTracker(modulus=1 << 16, rate=100.0)
+        tracker.accept(20, 0.0)
+        tracker.accept(number, 0.01, elapsed)
+        return tracker.restarted, tracker.repeated, tracker.lost
+
+    assert after(18, -0.02) == (0, 1, 0)
+    assert after(20, 0.0) == (0, 1, 0)
+    assert after(18, 0.03) == after(20, 0.3) == (1, 0, 0)  # the number ran back, the clock on
+    assert after(18, -9.0) == after(25, -9.0) == (1, 0, 0)  # the clock ran back too far
+    assert after(4020, 40.0) == (0, 0, 3999)
+    assert after(4020, 0.04) == (1, 0, 0)
+
+
 @given(st.lists(st.integers(0, 999), min_size=1, max_size=40))
 def test_device_time_never_runs_back(steps):
     clock = TimeUnwrapper(modulus=1000, tick=0.001)

@@ -163,16 +163,20 @@ class FrozenGuard:
 class RecordGuard:
     """Check for a stream whose record numbers restart repeatedly, or of which most records fail.
 
-    Random record numbers count as restarts. One restart within `RESTART_WINDOW` is tolerated, and
-    so is a fraction of missing and rejected records of up to `MAX_BAD_FRACTION`. That fraction is
-    checked after each `BAD_FRACTION_WINDOW`, if that had at least `MIN_RECORDS` records.
+    Random record numbers count as restarts. Of a sensor one restart within `RESTART_WINDOW` is
+    tolerated. Of what turns the discs none is, nor a link that was lost and came back: it has
+    forgotten its set-points, and would step to the next ones. A fraction of missing and rejected
+    records of up to `MAX_BAD_FRACTION` is tolerated. That fraction is checked after each
+    `BAD_FRACTION_WINDOW`, if that had at least `MIN_RECORDS` records.
 
     Args:
         name: Name of the stream, for the message.
+        turns_discs: Whether the stream's device turns the discs.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, *, turns_discs: bool = False) -> None:
         self._name = name
+        self._turns_discs = turns_discs
         self._restarts: deque[float] = deque()
         self._restarted = 0
         self._base: Counters | None = None
@@ -187,18 +191,21 @@ class RecordGuard:
 
         Raises:
             UnreliableRecords: The record numbers restarted twice within `RESTART_WINDOW`, or more
-                than `MAX_BAD_FRACTION` of one `BAD_FRACTION_WINDOW` is missing or rejected.
+                than `MAX_BAD_FRACTION` of one `BAD_FRACTION_WINDOW` is missing or rejected; or
+                what turns the discs restarted or reconnected.
         """
+        restarted = counters.restarted + self._turns_discs * counters.reconnected
         if self._base is None:
-            self._base, self._since, self._restarted = counters, now, counters.restarted
-        self._restarts.extend([now] * (counters.restarted - self._restarted))
-        self._restarted = counters.restarted
+            self._base, self._since, self._restarted = counters, now, restarted
+        self._restarts.extend([now] * (restarted - self._restarted))
+        self._restarted = restarted
         while self._restarts and self._restarts[0] < now - RESTART_WINDOW:
             self._restarts.popleft()
-        if len(self._restarts) > 1:
+        if len(self._restarts) > 1 - self._turns_discs:
             raise UnreliableRecords(
-                f"stream '{self._name}' restarted its numbering {len(self._restarts)} times within "
-                f"{RESTART_WINDOW:g} s; at most 1 restart is allowed"
+                f"stream '{self._name}' restarted its numbering or its link {len(self._restarts)} "
+                f"times within {RESTART_WINDOW:g} s; allowed: {1 - self._turns_discs}; check its "
+                "power and cable"
             )
         if now - self._since >= BAD_FRACTION_WINDOW:
             self._require_most(counters, self._base)
@@ -251,7 +258,7 @@ class RigGuards:
             if (limit := getattr(allowed, key)) is not None
         }  # fmt: skip
         bench.watch(self._magnitudes.keys() & FURTHER_LIMITS.keys())
-        self._records = {stream.name: RecordGuard(stream.name) for stream in bench.streams}
+        self._records: dict[str, RecordGuard] = {}
         self._age = {name: AgeGuard(name, limit=limits.reading_age) for name in bench.watched}
         self._frozen_forces = FrozenGuard("forces of the load cell", limit=limits.frozen)
         self._frozen_speeds = {
@@ -267,7 +274,11 @@ class RigGuards:
         self._silence: dict[str, SilenceGuard] = {}
 
     def expect_samples(self, *, now: float) -> None:
-        """Start the silence guards at host time `now` [s]; before, silence is not checked."""
+        """Start to check for silence, and records, at host time `now` [s], of energised discs."""
+        for stream in self._bench.streams:
+            turns_discs = stream is self._bench.motors
+            self._records[stream.name] = RecordGuard(stream.name, turns_discs=turns_discs)
+            self._records[stream.name].check(stream.counters, now=now)
         self._silence = {
             name: SilenceGuard(name, limit=self._limits.silence, now=now)
             for name in self._bench.watched
@@ -278,7 +289,7 @@ class RigGuards:
     ) -> None:
         """Check samples (value, age, silence, losses, freezing), discs' speed errors, and status.
 
-        Silence is checked from `expect_samples` on.
+        Silence and records are checked from `expect_samples` on.
 
         Args:
             batch: Samples of one poll.
@@ -302,7 +313,8 @@ class RigGuards:
         for name, taken in batch.taken.items():
             self._age[name].check(taken, now=now)
         for stream in self._bench.streams:
-            self._records[stream.name].check(stream.counters, now=now)
+            if stream.name in self._records:
+                self._records[stream.name].check(stream.counters, now=now)
         self._check_motion(batch, wanted, standing, now)
 
     def _check_motion(

@@ -16,6 +16,8 @@ from rig.slip_rig.decode import Forces, Zero, require_zero, tare
 
 ZERO_ATTEMPTS: Final = 3
 """Largest number of recordings for a zero whose samples cover too little of the duration."""
+STATUS_DELAY: Final = 0.12
+"""Time after a point in which drives still may report what happened within: a heartbeat [s]."""
 
 
 def take_zero(acquire: GuardedAcquisition, duration: float) -> Zero:
@@ -133,6 +135,8 @@ def record(
 ) -> Readings:
     """Record a point for the plan's duration into the sink; a sweep changes the slip meanwhile.
 
+    The guards look on for `STATUS_DELAY` after it.
+
     Args:
         acquire: The rig, at the point's set-points.
         sink: Recorder of the samples; its run is open.
@@ -162,6 +166,7 @@ def record(
             acquire.start_ramp(plan.points.omega_leg, slip)
 
     acquire.until(keep, duration)
+    acquire.until(lambda _: False, STATUS_DELAY)
     return join(kept)
 
 

@@ -20,7 +20,8 @@ class SimulatedBoard:
         rig: Simulated discs and contact that the board turns and measures.
         profile: Counts, signs and rate of the board.
         watchdog: Time without a speed command after which the board stops both discs, and ignores
-            speed commands until a stop command; starts with the first command [s].
+            speed commands until a stop command, as after switching on; infinite without one. It
+            starts with the first command [s].
         faults: Transmission errors of the line.
         rng: Random generator of the transmission errors.
     """
@@ -43,8 +44,8 @@ class SimulatedBoard:
         self._body = board_body(profile)
         self._command = speed_body(profile)
         self._fed = math.inf
-        self._number = 0
-        self._status = 0
+        self._number = self._booted = 0
+        self._status = WATCHDOG_EXPIRED
 
     def poll(self, now: float, received: bytes) -> bytes:
         """Check the watchdog, execute commands, simulate the rig, and return the packets due.
@@ -71,6 +72,13 @@ class SimulatedBoard:
         self._number = max(self._number, due)
         return self._wire.stream(frames)
 
+    def restart(self) -> None:
+        """Switch the board off and on: discs stop, and its numbers and its clock begin anew."""
+        self._stop()
+        self._status = WATCHDOG_EXPIRED
+        self._booted = self._number
+        self._framer.reset()
+
     def _frames(self, due: int) -> list[bytes]:
         """Encode the samples after the last one sent up to number `due`."""
         numbers = np.arange(self._number + 1, due + 1)
@@ -86,7 +94,7 @@ class SimulatedBoard:
         driving = np.rint(self._profile.traction_sign * scale * traction).astype(int).tolist()
         return [
             self._encode(number, (pressing[k], driving[k], leg[k], ground[k], self._status))
-            for k, number in enumerate(numbers.tolist())
+            for k, number in enumerate((numbers - self._booted).tolist())
         ]
 
     def _encode(self, number: int, counts: tuple[int, ...]) -> bytes:

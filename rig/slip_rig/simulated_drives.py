@@ -60,7 +60,8 @@ class SimulatedDrives:
         rig: Simulated rig whose discs the axes turn.
         bus: The axes' own end of the bus; the caller closes it.
         profile: Nodes, gears, signs and firmware of the drives.
-        watchdog: Time without a message after which an energised axis stops by itself [s].
+        watchdog: Time without a message after which an energised axis stops by itself; infinite
+            without one [s].
 
     Attributes:
         temperature: Temperature of both drives' transistors; the motors have no sensor [degC].
@@ -95,6 +96,12 @@ class SimulatedDrives:
         for axis in self._axes.values():
             if axis.disc == disc:
                 self._fail(axis, error)
+
+    def restart(self) -> None:
+        """Switch both drives off and on: they come up idle, without errors and set-points."""
+        for axis in self._axes.values():
+            self._release(axis)
+            axis.error, axis.velocity = 0, 0.0
 
     def poll(self, now: float) -> None:
         """Execute commands, check watchdogs, simulate the rig, and send frames due at `now` [s]."""

@@ -83,6 +83,7 @@ class ExperimentFolder:
         self._manifest = manifest
         self._profiles = profiles
         self._counts = StreamCounts(streams, clock)
+        self._written: Mapping[str, Counters] = {}
         self._clock = clock
         self._in_step = in_step
         self._journal = JournalWriter(data)
@@ -128,6 +129,7 @@ class ExperimentFolder:
         """
         del readings
         raw, counted = batch.raw, self._counts.due()
+        self._written = self._counts.now()
 
         def write_now() -> None:
             """Write the samples to the open run, if any; called in the writing thread."""
@@ -153,7 +155,8 @@ class ExperimentFolder:
         Raises:
             SinkFailed: The queue is full; in simulated time also if writing failed.
         """
-        counted = self._counts.now()
+        # The guards have looked on after the last sample of a point that is judged.
+        counted = self._counts.now() if verdict is None else self._written
         self._put(lambda: self._close_now(verdict, reason, counted), wait=True)
 
     def event(self, kind: str, text: str) -> None:

@@ -176,7 +176,6 @@ class StreamCounts:
 
     def now(self) -> Mapping[str, Counters]:
         """Return what each stream has counted so far, by its name."""
-        self._told = self._clock.now()
         return {
             stream.name: stream.counters.since(opened)
             for stream, opened in zip(self._streams, self._opened, strict=True)
@@ -184,7 +183,10 @@ class StreamCounts:
 
     def due(self) -> Mapping[str, Counters]:
         """Return the same where `COUNT_EVERY` has passed since the last time; else nothing."""
-        return self.now() if self._clock.now() - self._told >= COUNT_EVERY else {}
+        if self._clock.now() - self._told < COUNT_EVERY:
+            return {}
+        self._told = self._clock.now()
+        return self.now()
 
 
 def reading_failure(readers: Mapping[str, Acquisition]) -> str | None:

@@ -21,6 +21,17 @@ def test_discs_reach_their_speeds_and_slip_is_that_of_the_speeds(request, take):
     assert measured_slip(speeds.leg, speeds.ground, PROFILE)[-1] == pytest.approx(slip, abs=0.02)
 
 
+def test_drives_that_restart_come_up_idle_and_take_no_speeds(request, wait_until):
+    with twin(request) as (axes, drives), drives:
+        turn(drives)
+        wait_until(axes.turning, reading=drives)
+        axes.restart()
+        wait_until(lambda: not healthy(drives), reading=drives)
+        assert not axes.turning()
+        with pytest.raises(DeviceFault, match="left closed-loop control"):
+            drives.require_healthy()
+
+
 def test_a_host_that_reads_no_more_is_stopped_by_the_watchdog(request, wait_until):
     with twin(request) as (axes, drives), drives:
         turn(drives)

@@ -20,7 +20,6 @@ import socket
 import struct
 import sys
 import threading
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -39,12 +38,10 @@ _MOST_ASKING: Final = 4096
 """Number of programs that may ask for the owner of a lock, which answers none of them."""
 
 
-@dataclass
-class _Held:
-    """A lock that this process holds: what keeps it until closed, and number of its holders."""
+class _Held(contextlib.ExitStack):
+    """A lock that this process holds until this is closed, and the number of its holders."""
 
-    lock: contextlib.ExitStack
-    count: int = 1
+    count = 1
 
 
 _HELD: Final[dict[str, _Held]] = {}
@@ -86,7 +83,7 @@ class Exclusive:
             if held is not None and self._shared:
                 held.count += 1
             else:  # a process's second lock of a name is refused like another's
-                _HELD[self._name] = _Held(self._lock())
+                _HELD[self._name] = self._lock()
         self._taken = True
 
     def release(self) -> None:
@@ -102,7 +99,7 @@ class Exclusive:
             held.count -= 1
             if held.count == 0:
                 del _HELD[self._name]
-                held.lock.close()
+                held.close()
 
     def __enter__(self) -> "Exclusive":
         self.take()
@@ -111,9 +108,9 @@ class Exclusive:
     def __exit__(self, *_: object) -> None:
         self.release()
 
-    def _lock(self) -> contextlib.ExitStack:
+    def _lock(self) -> _Held:
         """Acquire the lock and return what holds it until it is closed; raises as `take`."""
-        with contextlib.ExitStack() as held:
+        with _Held() as held:
             if _NAMED:
                 held.enter_context(self._listen())
             if self._file is not None:
@@ -208,11 +205,6 @@ def _owner(place: str) -> str:
         credentials = asking.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
         process = struct.unpack("i", credentials[:4])[0]
         words = Path(f"/proc/{process}/cmdline").read_bytes().decode("utf-8", "replace")
-        command = shlex.join(words.rstrip("\0").split("\0"))
-        return f"process {process} ({_readable(command)})"
+        command = shlex.join(words.rstrip("\0").split("\0"))[:LONGEST]
+        return f"process {process} ({''.join(c if c.isprintable() else '?' for c in command)})"
     return "another program"
-
-
-def _readable(text: str) -> str:
-    """Cut a text to `LONGEST`; other than printable characters become `?`."""
-    return "".join(c if c.isprintable() else "?" for c in text[:LONGEST])

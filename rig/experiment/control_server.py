@@ -9,27 +9,55 @@ import contextlib
 import hmac
 import secrets
 import socket
-import socketserver
-import sys
-import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import Final, Self
 
-from rig.errors import LinkError, PartFailed, ProtocolError
+from rig.errors import LinkError, ProtocolError
 from rig.experiment.control import LONGEST_NOTE, Control
-from rig.experiment.supervision import start_thread
+from rig.experiment.supervision import repeating
 
 LONGEST_LINE: Final = 4 * LONGEST_NOTE + 256
 """Longest line, with a token and a command of `LONGEST_NOTE` characters [bytes]."""
 IDLE_TIMEOUT: Final = 600.0
-"""Silence after which a client is disconnected [s]."""
-JOIN_TIMEOUT: Final = 2.0
+"""Silence after which a client with the token is disconnected [s]."""
+TOKEN_TIMEOUT: Final = 1.0
+"""Time within which a client must have sent a line with the token [s]."""
+MOST_CLIENTS: Final = 16
+"""Number of connections; for a further one the oldest is closed that has not shown the token."""
+MOST_NEW: Final = 8
+"""Number of connections that are accepted in a turn; a run has other things to do."""
+MOST_WAITING: Final = 64
+"""Number of connections that the system holds until they are accepted."""
+TURN: Final = 0.02
+"""Interval between the turns in which each client is looked at [s]."""
+
+
+@dataclass
+class _Client:
+    """Connection of one client.
+
+    Attributes:
+        link: The connection, which does not block.
+        until: Time at which it is closed, unless a line with the token comes before [s].
+        known: Whether it has shown the token.
+        received: Beginning of a line.
+    """
+
+    link: socket.socket
+    until: float
+    known: bool = False
+    received: bytes = b""
 
 
 class ControlServer:
     """TCP server that passes commands to a run's mailbox, at a loopback port; a context manager.
 
-    A line is `TOKEN COMMAND`; the answer is a line that begins with `ok` or `error`.
+    A line is `TOKEN COMMAND`; the answer is a line that begins with `ok` or `error`. One thread
+    serves all clients in turns, so that those without the token, however many, take neither
+    descriptors nor more than a few percent of a processor's time from the run.
 
     Args:
         control: Mailbox of the run.
@@ -43,67 +71,77 @@ class ControlServer:
         self.port = 0
         self.token = secrets.token_urlsafe(16)
         self._control = control
-        self._server: socketserver.ThreadingTCPServer | None = None
-        self._thread: threading.Thread | None = None
-
-    def answer(self, line: str) -> str:
-        """Execute the command of one line `TOKEN COMMAND` and return the answer.
-
-        The answer is `ok ...`, or `error: ...` for a wrong token or an invalid command.
-        """
-        token, _, command = line.strip().partition(" ")
-        if not hmac.compare_digest(token.encode(), self.token.encode()):
-            return "error: wrong token; the token of this run is in its file control.json"
-        try:
-            return f"ok {self._control.execute(command, who='socket')}"
-        except ProtocolError as problem:
-            return f"error: {problem}"
+        self._clients: list[_Client] = []
+        self._held = contextlib.ExitStack()
 
     def __enter__(self) -> Self:
-        answer = self.answer
-
-        class Handler(socketserver.StreamRequestHandler):
-            """Connection of one client: answers line by line until it closes or is silent."""
-
-            timeout = IDLE_TIMEOUT
-
-            def handle(self) -> None:
-                """Answer the client's lines; an answer that cannot be sent ends the connection."""
-                with contextlib.suppress(OSError):  # disconnected, or silent for too long
-                    while line := self.rfile.readline(LONGEST_LINE):
-                        reply = answer(line.decode("utf-8", "replace"))
-                        self.wfile.write(f"{reply}\n".encode())
-
-        control = self._control
-
-        class Server(socketserver.ThreadingTCPServer):
-            """Server whose connections end with the program, each in a thread of its own."""
-
-            daemon_threads = True
-            block_on_close = False
-
-            def handle_error(self, request: object, client_address: object) -> None:
-                """Report an exception in a connection to the run, which then makes a safe stop."""
-                del request, client_address
-                error = sys.exception()
-                control.fail("control socket", error or RuntimeError("unknown"))
-
-        self._server = Server(("127.0.0.1", 0), Handler)
-        self.port = self._server.server_address[1]
-        try:
-            self._thread = start_thread(
-                partial(self._server.serve_forever, 0.05), name="control socket", control=control
-            )
-        except PartFailed:
-            self._server.server_close()
-            raise
+        with contextlib.ExitStack() as held:
+            listener = socket.create_server(("127.0.0.1", 0), backlog=MOST_WAITING)
+            held.enter_context(listener)
+            listener.setblocking(False)
+            self.port = listener.getsockname()[1]
+            held.callback(lambda: [client.link.close() for client in self._clients])
+            turn = partial(self._take_turn, listener)
+            thread = repeating(turn, every=TURN, name="control socket", control=self._control)
+            held.enter_context(thread)
+            self._held = held.pop_all()
         return self
 
     def __exit__(self, *exception: object) -> None:
-        if self._server is not None and self._thread is not None:
-            self._server.shutdown()
-            self._server.server_close()
-            self._thread.join(JOIN_TIMEOUT)
+        self._held.close()
+
+    def _take_turn(self, listener: socket.socket) -> None:
+        """Accept new clients, in the place of the oldest without the token, and attend to all."""
+        clients = [*self._clients, *_accepted(listener)]
+        clients.sort(key=lambda client: client.known)  # the first have waited longest
+        for client in clients[:-MOST_CLIENTS]:
+            client.link.close()
+        self._clients = clients[-MOST_CLIENTS:]
+        self._clients = [client for client in self._clients if self._attend(client)]
+
+    def _attend(self, client: _Client) -> bool:
+        """Answer the lines of a client that have arrived; close the connection or return True.
+
+        The end of the connection ends a line, too.
+        """
+        kept = True
+        try:
+            data = client.link.recv(LONGEST_LINE)
+            lines = (client.received + data).split(b"\n")
+            client.received = lines.pop() if data else b""
+            known = all(self._answer(client, line) for line in lines if line)
+            kept = known and len(data) > 0 and len(client.received) < LONGEST_LINE
+        except BlockingIOError:
+            pass
+        except OSError:
+            kept = False
+        if kept and time.monotonic() < client.until:
+            return True
+        client.link.close()
+        return False
+
+    def _answer(self, client: _Client, line: bytes) -> bool:
+        """Execute the command of a line `TOKEN COMMAND`; return whether the token was right."""
+        token, _, command = line.decode("utf-8", "replace").strip().partition(" ")
+        client.known = hmac.compare_digest(token.encode(), self.token.encode())
+        client.until = time.monotonic() + IDLE_TIMEOUT
+        reply = "error: wrong token; the token of this run is in its file control.json"
+        if client.known:
+            try:
+                reply = f"ok {self._control.execute(command, who='socket')}"
+            except ProtocolError as problem:
+                reply = f"error: {problem}"
+        client.link.sendall(f"{reply}\n".encode())
+        return client.known
+
+
+def _accepted(listener: socket.socket) -> Iterator[_Client]:
+    """Accept and yield the clients that wait, at most `MOST_NEW`."""
+    with contextlib.suppress(OSError):  # there is no other, it is gone, or no descriptor is free
+        for _ in range(MOST_NEW):
+            link, _ = listener.accept()
+            link.setblocking(False)
+            yield _Client(link, time.monotonic() + TOKEN_TIMEOUT)
 
 
 def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -> str:

@@ -13,6 +13,9 @@ from rig.experiment.condition import next_stop
 from rig.experiment.control import Control
 from rig.safety import StopCategory, StopSwitch
 
+JOIN_TIMEOUT: Final = 2.0
+"""Longest wait for the end of a thread [s]."""
+
 
 @contextmanager
 def supervised(control: Control) -> Iterator[None]:
@@ -63,6 +66,35 @@ def start_thread(work: Callable[[], None], *, name: str, control: Control) -> th
         control.fail(name, error)
         raise PartFailed(name, error) from error
     return thread
+
+
+@contextmanager
+def repeating(
+    work: Callable[[], object], *, every: float, name: str, control: Control
+) -> Iterator[None]:
+    """Call a function again and again in a thread, as of `start_thread`, until the context ends.
+
+    Args:
+        work: Function to call; the end of the context waits for it, at most `JOIN_TIMEOUT`.
+        every: Pause between two calls [s].
+        name: Name of the thread, for the message.
+        control: Mailbox of the run.
+
+    Raises:
+        PartFailed: As `start_thread`.
+    """
+    ending = threading.Event()
+
+    def repeat() -> None:
+        while not ending.wait(every):
+            work()
+
+    thread = start_thread(repeat, name=name, control=control)
+    try:
+        yield
+    finally:
+        ending.set()
+        thread.join(JOIN_TIMEOUT)
 
 
 ENDING: Final = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGTSTP")

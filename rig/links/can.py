@@ -16,7 +16,7 @@ import can
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import DeviceMismatch, LinkError, RigTimeout
 from rig.exclusive import Exclusive, device_lock
-from rig.links.port_device import PortDevice
+from rig.links.port_device import take_port
 
 if TYPE_CHECKING:
     import serial
@@ -67,7 +67,7 @@ class CanLink:
         self._clock = clock
         self._bus: can.BusABC | None = None
         self._lock = _bus_lock(channel)
-        self._device = PortDevice(_port_name(str(channel)))
+        self._usb: str | None = None
         self._retry_at = 0.0
         self._last_arrival = -math.inf
         self._empty_at = self._since = clock.now()
@@ -83,8 +83,9 @@ class CanLink:
         """
         if self._lock is not None:
             self._lock.take()
+        self._usb = None
         try:
-            self._bus = self._connect(again=False)
+            self._bus = self._connect()
             self._empty_at = self._since = self._clock.now()
         except (can.CanError, OSError, ValueError, ImportError) as problem:
             self.close()
@@ -260,17 +261,17 @@ class CanLink:
         elif not message.is_remote_frame and not message.is_extended_id:
             messages.append(message)
 
-    def _connect(self, *, again: bool) -> can.BusABC:
+    def _connect(self) -> can.BusABC:
         """Open the bus by its name, or return the one that was given open.
 
-        An adapter on a serial port is opened exclusively; it is the same as before if `again`.
+        An adapter on a serial port is opened exclusively, and is that of before.
         """
         if isinstance(self._channel, can.BusABC):
             return self._channel
         interface, _, channel = self._channel.partition(":")
         bus = can.Bus(channel=channel, interface=interface, bitrate=self._bitrate)
         if (port := _serial_port(bus)) is not None:
-            self._device.take(port, bus.shutdown, again=again)
+            self._usb = take_port(port, bus.shutdown, expected=self._usb)
         return bus
 
     def _drop_connection(self) -> None:
@@ -290,7 +291,7 @@ class CanLink:
             return False
         self._retry_at = self._clock.now() + RETRY_AFTER
         try:
-            self._bus = self._connect(again=True)
+            self._bus = self._connect()
         except DeviceMismatch:
             raise
         except (can.CanError, OSError, ValueError):
@@ -312,10 +313,5 @@ def _bus_lock(channel: "str | can.BusABC") -> Exclusive | None:
     """
     if isinstance(channel, can.BusABC) or channel.startswith("virtual:"):
         return None
-    return device_lock(_port_name(channel))
-
-
-def _port_name(channel: str) -> str:
-    """Return the serial port of an adapter's channel, `slcan:PORT@BAUDRATE`; else the channel."""
     interface, _, place = channel.partition(":")
-    return place.partition("@")[0] if interface == "slcan" else channel
+    return device_lock(place.partition("@")[0] if interface == "slcan" else channel)

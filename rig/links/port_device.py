@@ -4,8 +4,8 @@
 import os
 import sys
 from collections.abc import Callable
-from contextlib import suppress
-from typing import Final, NamedTuple
+from contextlib import ExitStack, suppress
+from typing import Final
 
 import serial
 from serial.tools import list_ports
@@ -19,87 +19,60 @@ _PSEUDO_TERMINALS = "/dev/pts/"
 as long as the twin at the other end lives."""
 
 
-class UsbDevice(NamedTuple):
-    """What tells a USB device from others of its kind.
-
-    Attributes:
-        ids: Vendor, product, serial number if it has one, and number of the interface.
-        place: Bus and sockets that it is plugged into, such as `1-1.4`.
-        unique: Whether it has a serial number that no other connected device of its kind has.
-    """
-
-    ids: str
-    place: str
-    unique: bool = False
-
-    def is_same(self, other: "UsbDevice") -> bool:
-        """Return whether another reading is of the same device; of those not unique by place."""
-        unique = self.unique and other.unique
-        return self.ids == other.ids and (unique or self.place == other.place)
-
-
-class PortDevice:
-    """The device at a serial port: taken for this program, and not replaced by another.
+def take_port(
+    port: serial.Serial, close: Callable[[], object], *, expected: str | None = None
+) -> str | None:
+    """Take exclusive use of a port just opened, and return which USB device is there.
 
     Ports are numbered in the order in which devices appear: two that were unplugged may come back
     each at the other's port.
 
     Args:
-        name: Name of the port.
+        port: The port.
+        close: Closes the port; called before an error is raised.
+        expected: USB device that was there before; None for any, or where there was none.
+
+    Raises:
+        DeviceMismatch: Another one is there now.
+        LinkError: Another program has exclusive use of the port, or it is unplugged again.
     """
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self._first: UsbDevice | None = None
-
-    def take(self, port: serial.Serial, close: Callable[[], None], *, again: bool) -> None:
-        """Take exclusive use of a port just opened, and check that its device is the same.
-
-        Args:
-            port: The port.
-            close: Closes the port; called before an error is raised.
-            again: Whether the device must be that of before; else it is remembered.
-
-        Raises:
-            DeviceMismatch: It is another USB device.
-            LinkError: Another program has exclusive use, or it is not known yet which USB device is
-                there.
-        """
-        try:
-            _claim_terminal(port)
-            self._require_same(again=again)
-        except BaseException:
-            close()
-            raise
-
-    def _require_same(self, *, again: bool) -> None:
-        found = usb_device(self._name)
-        if not again or self._first is None:
-            self._first = found
-        elif found is None:
-            raise LinkError(f"the USB device at port {self._name} is not known yet")
-        elif not found.is_same(self._first):
+    with ExitStack() as failed:
+        failed.callback(close)
+        _claim_terminal(port)
+        found = usb_device(str(port.port))
+        if expected is not None and found is None:
+            raise LinkError("it is unplugged again")
+        if expected not in {None, found}:
             raise DeviceMismatch(
-                f"another USB device has come back at port {self._name}: found {found}, expected "
-                f"{self._first}; name the port by its link in /dev/serial/by-id or by-path"
+                f"another USB device has come back at port {port.port}: found {found}, expected "
+                f"{expected}; name the port by its link in /dev/serial/by-id"
             )
+        failed.pop_all()
+    return found
 
 
-def usb_device(port: str) -> UsbDevice | None:
-    """Return which USB device is at a serial port; None for other ports, or if it just goes."""
+def usb_device(port: str) -> str | None:
+    """Describe the USB device at a serial port, as no other is described; None for other ports.
+
+    By vendor, product and serial number; where there is none, or another port has the same, by the
+    socket that it is plugged into, too.
+
+    Raises:
+        LinkError: A device was unplugged meanwhile.
+    """
     try:
         found = {each.device: each for each in list_ports.comports() if each.vid is not None}
-    except (OSError, TypeError, ValueError):  # a device was unplugged meanwhile
-        return None
-    place, ids = {}, {}
-    for name, each in found.items():
-        place[name], _, interface = (each.location or "").partition(":")
-        ids[name] = f"{each.vid:04x}:{each.pid:04x} {each.serial_number or ''} {interface}"
+    except TypeError as gone:
+        raise LinkError("a device was unplugged meanwhile") from gone
+    ids = {
+        name: f"{each.vid:04x}:{each.pid:04x} {each.serial_number or 'without serial number'}"
+        for name, each in found.items()
+    }
     name = port if port in found else os.path.realpath(port)
     if name not in found:
         return None
-    unique = bool(found[name].serial_number) and list(ids.values()).count(ids[name]) == 1
-    return UsbDevice(ids[name].strip(), place[name], unique)
+    unique = found[name].serial_number and list(ids.values()).count(ids[name]) == 1
+    return ids[name] if unique else f"{ids[name]} in socket {found[name].location}"
 
 
 def _claim_terminal(port: serial.Serial) -> None:

@@ -12,7 +12,7 @@ import serial
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import DeviceMismatch, LinkError, RigTimeout
 from rig.exclusive import device_lock
-from rig.links.port_device import PortDevice
+from rig.links.port_device import take_port
 
 CHUNK: Final = 1 << 16
 """Largest number of bytes of one system call [bytes]."""
@@ -49,7 +49,7 @@ class SerialLink:
         self._serial: serial.Serial | None = None
         self._retry_at = 0.0
         self._lock = device_lock(port)
-        self._device = PortDevice(port)
+        self._usb: str | None = None
 
     def open(self) -> None:
         """Lock and open the port, so that no other program uses it.
@@ -60,8 +60,9 @@ class SerialLink:
             OSError: The lock cannot be created.
         """
         self._lock.take()
+        self._usb = None
         try:
-            self._serial = self._connect(again=False)
+            self._serial = self._connect()
         except (OSError, ValueError) as problem:
             self._lock.release()
             raise LinkError(
@@ -112,8 +113,8 @@ class SerialLink:
             return False
         return True
 
-    def _connect(self, *, again: bool) -> serial.Serial:
-        """Open the port, exclusively where it is a device; the same as before if `again`."""
+    def _connect(self) -> serial.Serial:
+        """Open the port, exclusively where it is a device; a USB device is that of before."""
         opened = serial.serial_for_url(
             self.port, do_not_open=True, baudrate=self._baudrate, timeout=0,
             write_timeout=WRITE_TIMEOUT,
@@ -122,7 +123,7 @@ class SerialLink:
         if not self.port.startswith("socket:"):
             port.exclusive = True  # two readers would each get a part of the bytes
         port.open()
-        self._device.take(port, port.close, again=again)
+        self._usb = take_port(port, port.close, expected=self._usb)
         return port
 
     def _disconnect(self) -> None:
@@ -147,7 +148,7 @@ class SerialLink:
             return False
         self._retry_at = self._clock.now() + RETRY_AFTER
         try:
-            self._serial = self._connect(again=True)
+            self._serial = self._connect()
         except DeviceMismatch:
             raise
         except (OSError, ValueError):

@@ -191,7 +191,7 @@ def _end(outcome: "RunOutcome", data: Path, output: Output, *, latched: bool) ->
     raise typer.Exit(code)
 
 
-@app.command("say")
+@app.command("say", context_settings={"ignore_unknown_options": True})
 @request_command()
 def command(
     words: Annotated[
@@ -205,7 +205,7 @@ def command(
     output: Output = TEXT,
 ) -> None:
     """Send a command to the running experiment that records to DIR."""
-    from zebro_lab.experiment.stage import command_run
+    from zebro_lab.experiment.say_stage import command_run
 
     reply = command_run(data, " ".join(words))
     output.say(reply)

@@ -25,8 +25,6 @@ JOURNAL_FILE: Final = "experiment.jsonl"
 RESERVE_FILE: Final = ".experiment.reserve"
 RESERVE: Final = 1 << 16
 """Reserved space that is freed when the disk is full, for the end of a run [bytes]."""
-_NO_LINK: Final = getattr(os, "O_NOFOLLOW", 0)
-"""Flag with which a symbolic link is not opened."""
 LARGEST: Final = 256 << 20
 """Largest size of a journal [bytes]."""
 EMERGENCY: Final = "emergency stop"
@@ -120,7 +118,7 @@ class JournalWriter:
 
     def _write(self, line: bytes) -> None:
         """Append a line and flush it to the disk (fsync); one for which that fails is removed."""
-        handle = os.open(self._file, os.O_WRONLY | os.O_CREAT | _NO_LINK, 0o644)
+        handle = os.open(self._file, os.O_WRONLY | os.O_CREAT, 0o644)
         try:
             before = os.lseek(handle, 0, os.SEEK_END)
             try:
@@ -234,11 +232,8 @@ def _resumed(data: Path, plan_text: str) -> Journal:
     """
     journal, file = read_journal(data), data / JOURNAL_FILE
     if file.is_symlink() or file.stat().st_nlink > 1:
-        raise SettingsError(
-            "is a link to a file that has another name, which must not change; put a copy in its "
-            "place",
-            file=file,
-        )
+        what = "is one file with another name (a link), which would change too; put a copy there"
+        raise SettingsError(what, file=file)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
             "was started with another plan or another text of it, comments included; use the text "

@@ -62,11 +62,11 @@ class EmergencyLatch:
             handle = self._open(os.O_WRONLY)
         except FileNotFoundError:
             self._write(b"", os.O_CREAT | os.O_EXCL)
-            return
-        names = os.fstat(handle).st_nlink
-        os.close(handle)
-        if names > 1:
-            raise OSError(errno.EMLINK, f"it is one file with {names} names", str(self._file))
+        else:
+            names = os.fstat(handle).st_nlink
+            os.close(handle)
+            if names > 1:
+                raise OSError(errno.EMLINK, "it is one file with another name", str(self._file))
 
     def latch(self, reason: str) -> None:
         """Write the reason of an emergency stop, cut to 256 characters, into the prepared file.

@@ -12,11 +12,12 @@ from typing import Final
 from rig.errors import InUse
 from rig.exclusive import folder_lock
 from rig.experiment.control import Control
-from rig.experiment.control_server import ControlServer, send_command
+from rig.experiment.control_server import ControlServer
 from rig.experiment.plan import WATCHDOG_PROOF, Plan
 from rig.experiment.run import RunOutcome, run_plan
 from rig.experiment.sink import ExperimentWatcher
-from rig.experiment.supervision import signal_stops, supervised
+from rig.experiment.supervision import repeating, signal_stops, supervised
+from rig.safety import StopCategory
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import (
     JOURNAL_FILE,
@@ -24,22 +25,22 @@ from zebro_lab.experiment.journal import (
     begin_or_resume,
     plan_fingerprint,
 )
+from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.opened_rig import OpenedRig, opened_rig
 from zebro_lab.experiment.plan_stage import read_plan, require_plan_allowed
 from zebro_lab.experiment.points import Finished, finished_points, holds_points, point_sources
 from zebro_lab.experiment.request import RigRunRequest
-from zebro_lab.files.documents import read_json_document, require_object
+from zebro_lab.experiment.say_stage import CONTROL_FILE
 from zebro_lab.files.errors import (
     AlreadyExists,
-    DataError,
-    NotFound,
     RecordingError,
     SettingsError,
 )
 from zebro_lab.runs.folder import removing_new_folders
 from zebro_lab.runs.manifest import MANIFEST_FILE, RunManifest
 
-CONTROL_FILE: Final = "control.json"
+LOOK_EVERY: Final = 0.05
+"""Interval between looks at the emergency latch, which another program may set [s]."""
 
 
 def run_experiment(
@@ -193,47 +194,22 @@ def _owned(data: Path) -> Iterator[None]:
         yield
 
 
-def command_run(data: Path, command: str) -> str:
-    """Send a command to the experiment that runs in a folder, and return the reply.
-
-    Args:
-        data: Folder of the experiment.
-        command: One of the commands of `rig.experiment.control`.
-
-    Raises:
-        NotFound: No experiment runs in the folder.
-        DataError: The file with the address of the control socket is damaged.
-        RigError: The experiment does not answer, or rejects the command.
-    """
-    file = data / CONTROL_FILE
-    if not file.exists():
-        raise NotFound(f"{data}: no experiment is running here; start one, or give its --data")
-    port, token = _address(file)
-    return send_command(port, token, command)
-
-
-def _address(file: Path) -> tuple[int, str]:
-    """Read port and token of a running experiment's control socket from its JSON file.
-
-    Raises:
-        DataError: The file is damaged, or port or token is missing or invalid.
-    """
-    content = require_object(read_json_document(file, advice="no experiment is running"), file)
-    port, token = content.get("port"), content.get("token")
-    if type(port) is not int or not 0 < port < 1 << 16 or not isinstance(token, str):
-        problem = "holds no valid port and token; use the keys of the experiment's terminal"
-        raise DataError(problem, file=file)
-    return port, token
-
-
 @contextmanager
 def _commandable(data: Path, control: Control) -> Iterator[None]:
     """Serve the control socket while the body runs; write its port and token to `control.json`.
 
-    Only the file's owner may read it; it is removed at the end.
+    Only the file's owner may read it; it is removed at the end. An emergency stop that another
+    program latches on disk is carried out as well, without the socket.
     """
-    file, draft = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new"
-    with ControlServer(control) as server:
+    file, draft, latch = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new", EmergencyLatch(data)
+
+    def look() -> None:
+        """Request an emergency stop once one is latched on disk."""
+        if not control.stop.latched and (reason := latch.reason) is not None:
+            control.stop.request(StopCategory.EMERGENCY, reason)
+
+    watch = repeating(look, every=LOOK_EVERY, name="emergency latch", control=control)
+    with watch, ControlServer(control) as server:
         draft.unlink(missing_ok=True)
         handle = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(handle, "w", encoding="utf-8") as out:

@@ -2,12 +2,14 @@
 """A run is commanded over a socket of this machine, by who knows the token."""
 
 import socket
+import time
+from contextlib import ExitStack
 
 import pytest
 
 from rig.errors import LinkError, ProtocolError
 from rig.experiment.control import LONGEST_NOTE, Control
-from rig.experiment.control_server import ControlServer, send_command
+from rig.experiment.control_server import MOST_CLIENTS, ControlServer, send_command
 from rig.safety import StopCategory
 
 
@@ -37,6 +39,73 @@ def test_who_does_not_know_the_token_commands_nothing():
         with pytest.raises(ProtocolError, match="wrong token"):
             send_command(server.port, "POST", "/ HTTP/1.1")
     assert control.stop.pending is None
+
+
+def connect(server, first=b""):
+    link = socket.create_connection(("127.0.0.1", server.port), timeout=10)
+    link.sendall(first)
+    return link
+
+
+def is_closed(link):
+    """Return whether the other end closes a connection, or has closed it."""
+    try:
+        return link.recv(1) == b""
+    except ConnectionResetError:
+        return True
+
+
+def test_a_client_with_the_token_stays_connected_and_the_end_of_its_connection_ends_a_line():
+    control = Control()
+    with ControlServer(control) as server, connect(server) as link, link.makefile("rb") as answers:
+        for command in (b"status", b"note a\n", b"nonsense", b"note b"):
+            link.sendall(server.token.encode() + b" " + command + b"\n" * (command != b"note b"))
+        link.shutdown(socket.SHUT_WR)
+        said = answers.read().splitlines()
+    assert [line.split()[0] for line in said] == [b"ok", b"ok", b"error:", b"ok"]
+    assert [note.text for note in control.take_notes()] == ["socket: a", "socket: b"]
+
+
+@pytest.mark.parametrize(
+    "first", [b"", b"soft", b"soft\nsafe\n", b"x" * 100_000, b"\n" * 9, b"\xff\n"]
+)
+def test_who_does_not_show_the_token_soon_is_disconnected(first):
+    control = Control()
+    with ControlServer(control) as server, connect(server, first) as link:
+        while not is_closed(link):
+            pass
+        assert control.stop.pending is None
+
+
+def test_a_client_that_trickles_is_disconnected():
+    def trickle(link):
+        for _ in range(1000):
+            link.sendall(b"x")
+            time.sleep(0.01)
+
+    with ControlServer(Control()) as server, connect(server) as link, pytest.raises(OSError):
+        trickle(link)
+
+
+def test_clients_without_the_token_displace_one_another_but_none_with_it():
+    control = Control()
+    with ControlServer(control) as server, ExitStack() as stack:
+        known = stack.enter_context(connect(server, f"{server.token} status\n".encode()))
+        assert known.recv(100) == b"ok not started\n"
+        idle = [stack.enter_context(connect(server)) for _ in range(3 * MOST_CLIENTS)]
+        assert send_command(server.port, server.token, "pause") == "done"
+        assert all(is_closed(link) for link in idle)
+        known.sendall(f"{server.token} resume\n".encode())
+        assert known.recv(100) == b"ok done\n"
+    assert not control.paused
+
+
+def test_a_fault_of_the_server_is_a_failed_part_of_the_run(monkeypatch):
+    control = Control()
+    monkeypatch.setattr(control, "execute", lambda line, *, who: 1 / 0)
+    with ControlServer(control) as server, pytest.raises((LinkError, ProtocolError)):
+        send_command(server.port, server.token, "status", timeout=0.3)
+    assert "control socket failed: ZeroDivisionError" in str(control.failure)
 
 
 def test_bytes_of_a_foreign_encoding_reach_the_run_as_escapes():

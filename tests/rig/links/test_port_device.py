@@ -49,7 +49,6 @@ def _plugged(monkeypatch):
         ({"serial": "7"}, {"serial": "8"}),
         ({"serial": None}, {"serial": None, "place": "1-2"}),
         ({}, {"pid": 0x6001}),
-        ({"place": "1-1:1.0"}, {"place": "1-1:1.1"}),
     ],
 )
 def test_another_device_at_the_port_is_refused_and_no_byte_of_it_is_read(plugged, before, after):
@@ -112,12 +111,18 @@ def test_the_same_device_is_taken_back(plugged, before, after, others):
 
 
 def test_devices_that_have_the_same_serial_number_are_told_by_their_sockets(plugged):
-    plugged[:] = [usb("/dev/a", "0001", "1-1"), usb("/dev/b", "0001", "1-2")]
-    first, other = usb_device("/dev/a"), usb_device("/dev/b")
-    assert not first.is_same(other)
-    del plugged[1]
-    assert usb_device("/dev/a").is_same(first)
+    plugged[:] = [usb("/dev/a", "0001", "1-1"), usb("/dev/b", "0001", "1-2"), usb("/dev/c", "7")]
+    assert len({usb_device(each.device) for each in plugged}) == 3
+    before = usb_device("/dev/c")
+    plugged[2] = usb("/dev/d", "7", "1-5")
+    assert usb_device("/dev/d") == before
     assert usb_device("/dev/ttyS0") is None
+
+
+def test_a_device_that_goes_while_the_ports_are_listed_is_a_link_error(monkeypatch):
+    monkeypatch.setattr(list_ports, "comports", lambda: int(None, 16))  # as pyserial's does
+    with pytest.raises(LinkError, match="unplugged"):
+        usb_device("/dev/a")
 
 
 def test_an_adapter_of_a_bus_is_not_replaced_by_another(plugged, monkeypatch):

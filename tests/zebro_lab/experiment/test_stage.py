@@ -24,7 +24,7 @@ from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment.journal import read_journal
-from zebro_lab.experiment.stage import command_run
+from zebro_lab.experiment.say_stage import command_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError, ZebroLabError
 from zebro_lab.runs.folder import find_runs, read_slip_rig_run
 from zebro_lab.runs.manifest import read_manifest

@@ -120,6 +120,8 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
 
 BUCKET: Final = 0.05
 """Interval of host time of which one pair of device and host time is kept [s]."""
+MOST_PAIRS: Final = 40_000
+"""Number of kept pairs, half an hour's, above which their intervals are doubled."""
 RESTART_JUMP: Final = 1.0
 """Jump of host minus device time between samples that means a restart of the device [s]."""
 
@@ -127,8 +129,8 @@ RESTART_JUMP: Final = 1.0
 class ClockWatch:
     """Collects the pair of device and host time with the smallest delay in each `BUCKET`.
 
-    The pairs give offset and drift of the device's clock. One thread may add samples while another
-    one asks for the result.
+    The pairs give offset and drift of the device's clock. The intervals are doubled whenever there
+    are more than `MOST_PAIRS`. One thread may add samples while another one asks for the result.
 
     Args:
         start: Host time at which the run began [s].
@@ -136,14 +138,15 @@ class ClockWatch:
 
     def __init__(self, *, start: float) -> None:
         self._start = start
+        self._bucket = BUCKET
         self._device: list[float] = []
         self._host: list[float] = []
         self._lock = threading.Lock()
 
     def add(self, samples: Sequence[Sample]) -> None:
-        """Keep the times of the last sample of a read where they are the best of their `BUCKET`.
+        """Keep the times of the last sample of a read where they are the best of their interval.
 
-        The last sample of a read waited least. In each `BUCKET` of host time the pair with the
+        The last sample of a read waited least. In each interval of host time the pair with the
         smallest host minus device time is kept. A sample without device time is ignored.
         """
         latest = samples[-1] if samples else None
@@ -153,14 +156,19 @@ class ClockWatch:
             self._keep(latest.device_time, latest.host_time - self._start)
 
     def _keep(self, device: float, host: float) -> None:
-        """Append a pair; of two pairs in the same `BUCKET` keep the one with the smaller delay."""
-        if self._host and host // BUCKET == self._host[-1] // BUCKET:
+        """Append a pair; of two pairs in the same interval keep the one with the smaller delay."""
+        if self._host and host // self._bucket == self._host[-1] // self._bucket:
             if host - device >= self._host[-1] - self._device[-1]:
                 return
             self._device.pop()
             self._host.pop()
         self._device.append(device)
         self._host.append(host)
+        if len(self._host) > MOST_PAIRS:
+            pairs = zip(self._device, self._host, strict=True)
+            self._bucket, self._device, self._host = 2 * self._bucket, [], []
+            for pair in pairs:
+                self._keep(*pair)
 
     def result(self) -> Mapping[str, float] | None:
         """Fit offset and drift of the device's clock; return `ClockFit`'s attributes by name.

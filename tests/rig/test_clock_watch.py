@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rig import clock_watch
 from rig.clock_watch import ClockWatch, fit_clock, sample_times
 from rig.device import Sample
 from rig.errors import ProtocolError
@@ -54,6 +55,21 @@ def test_after_a_restart_the_clock_that_runs_now_counts():
         for batch in batches(start, 10.0, offset=offset)[0]:
             watch.add(batch)
     assert watch.result()["offset"] == pytest.approx(100.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("restart", [None, 2000.0])
+def test_a_long_watch_keeps_as_many_pairs_as_a_short_one_and_tells_as_much(monkeypatch, restart):
+    monkeypatch.setattr(clock_watch, "MOST_PAIRS", 1000)
+    watch, rng = ClockWatch(start=0.0), np.random.default_rng(0)
+    for t in np.arange(0.0, 4000.0, 0.05):
+        zero = 7.0 if restart is None or t < restart else 7.0 + restart
+        late = rng.exponential(3e-4)
+        watch.add([Sample(t + late, float((t - zero) / (1 + DRIFT)), 0, (0,))])
+        assert len(watch._host) == len(watch._device) <= 1000
+    assert len(watch._host) > 500
+    result = watch.result()
+    assert result["offset"] == pytest.approx(zero, abs=1e-4)
+    assert result["drift"] == pytest.approx(DRIFT, abs=1e-6)
 
 
 def test_a_device_without_a_clock_has_no_result():

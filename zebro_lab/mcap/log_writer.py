@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import IO, Final
 
 from mcap.well_known import MessageEncoding, SchemaEncoding
-from mcap.writer import CompressionType, Writer
+from mcap.writer import CompressionType, IndexType, Writer
 
 from rig.device import Counters, Sample
 from rig.sample_columns import as_columns
@@ -43,6 +43,9 @@ _SCHEMAS: Final = {
 """Definition in ros2msg of each type of message."""
 _CHUNK_BYTES: Final = 1 << 20  # flushing ends a chunk long before
 
+_KEPT: Final = "_Writer__chunk_indices"
+"""Where the library keeps its entry of each chunk until the end, also those it is not to write."""
+
 
 class LogWriter:
     """Writer of a run's MCAP log: raw samples, counters, events; not thread-safe.
@@ -70,7 +73,11 @@ class LogWriter:
         self.written = {raw_topic(name): 0 for name in streams}
         self._start, self._start_ns = start, start_ns
         self._dtypes = {name: RAW_SCHEMAS[each.schema][0] for name, each in streams.items()}
-        self._writer = Writer(file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+        # Without an index of the chunks, ten a second, which would be kept until the end.
+        self._writer = Writer(
+            file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD,
+            index_types=IndexType.ATTACHMENT,
+        )  # fmt: skip
         self._writer.start(profile="ros2", library="zebro-lab")
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
@@ -126,6 +133,7 @@ class LogWriter:
     def flush(self) -> None:
         """Pass all buffered data to the operating system; they survive a crash of this process."""
         self._writer.flush()
+        vars(self._writer).get(_KEPT, []).clear()
 
     def finish(self) -> None:
         """Write the index and the end of the log; the file stays open."""

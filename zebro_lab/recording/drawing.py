@@ -115,7 +115,7 @@ def clock_in_words(name: str, clock: Mapping[str, float]) -> str:
     )
     return (
         f"clock of {name}: {pace}, shows 0 s at {offset} s of the run; in half of the intervals of "
-        f"50 ms even the quickest sample came more than {1e3 * clock['delay']:.2g} ms late"
+        f"50 ms or more even the quickest sample came more than {1e3 * clock['delay']:.2g} ms late"
     )
 
 

@@ -104,7 +104,8 @@ class RunManifest:
             recorder dropped, by stream.
         clocks: Attributes of `ClockFit` of each device's clock, by stream, for devices that send
             their time: time of the run = offset + (1 + drift) device time. The delay is the median
-            time by which the quickest sample of each interval of 50 ms arrives later than that.
+            time by which the quickest sample of each interval of 50 ms, or more, arrives later than
+            that.
         duration: Requested duration ("asked") and the time of the run from which it counts
             ("from"), when every stream had sent its first sample; empty for a run without a set
             duration [s].

@@ -1,14 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Logs are read by public tools alone."""
+"""Logs are read by public tools alone, and take no memory while they grow."""
 
-from dataclasses import fields
+import resource
+import tracemalloc
+from dataclasses import fields, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from mcap.reader import make_reader
 
+from rig.clock_watch import ClockWatch
 from rig.device import Counters as DeviceCounters
+from rig.sample_columns import SampleColumns
 from support.logs import STREAMS, by_topic, log_of
+from zebro_lab.mcap.log_writer import LogWriter
 
 
 @pytest.mark.parametrize("stream", STREAMS)
@@ -39,3 +45,78 @@ def test_the_log_alone_names_counts_and_units_and_keeps_the_profile(stream):
     assert "[s]" in next(text for name, text in schemas.items() if "Raw" in name)
     (attachment,) = reader.iter_attachments()
     assert (attachment.name, attachment.data) == ("profiles/x.toml", b"schema = 1")
+
+
+class Nowhere:
+    """A file that keeps nothing of what is written, but how much."""
+
+    def __init__(self):
+        self.size = 0
+
+    def write(self, data):
+        self.size += len(data)
+        return len(data)
+
+    def tell(self):
+        return self.size
+
+    def flush(self):
+        """Do nothing."""
+
+
+def test_a_log_in_the_making_needs_no_more_memory_the_longer_it_is():
+    streams = {"board": STREAMS["board"]}
+    writer = LogWriter(Nowhere(), streams=streams, attachments={}, start=0.0, start_ns=0)
+    taken = []
+    tracemalloc.start()
+    try:
+        for chunk in range(2400):
+            writer.event(chunk / 10, "hello")
+            writer.flush()
+            if chunk in (600, 2399):
+                taken.append(tracemalloc.get_traced_memory()[0])
+    finally:
+        tracemalloc.stop()
+    assert taken[1] < 1.2 * taken[0]
+    writer.finish()
+
+
+HOUR = 36_000
+"""Number of chunks that a recorder writes in an hour."""
+
+
+def resident():
+    """Return the memory of this process [bytes]."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
+
+
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+def test_a_day_of_a_board_and_a_load_cell_needs_the_memory_of_two_hours():
+    streams = {name: STREAMS[name] for name in ("board", "load_cell")}
+    writer = LogWriter(Nowhere(), streams=streams, attachments={}, start=0.0, start_ns=0)
+    watches = {name: ClockWatch(start=0.0) for name in streams}
+    batches = {"board": batch(4, 1e3), "load_cell": batch(6, 7e3)}
+    taken = {}
+    for chunk in range(24 * HOUR + 1):
+        for name, samples in batches.items():
+            part = replace(samples, host_time=samples.host_time + chunk / 10,
+                           device_time=samples.device_time + chunk / 10)  # fmt: skip
+            writer.write(name, part)
+            for read in range(0, len(part), len(part) // 4):
+                watches[name].add(part[read : read + len(part) // 4])
+        writer.flush()
+        if chunk % (2 * HOUR) == 0:
+            taken[chunk // HOUR] = resident()
+    writer.finish()
+    assert taken[24] < 1.2 * taken[2], taken
+    assert all(abs(watch.result()["drift"]) < 1e-9 for watch in watches.values())
+
+
+def batch(width, rate):
+    """Return the samples of 0.1 s."""
+    n = round(rate / 10)
+    host = np.arange(n) / rate
+    counts = np.random.default_rng(0).integers(0, 1 << 20, (n, width), dtype="i4")
+    zeros = np.zeros(n, dtype="u4")
+    return SampleColumns(host, host - 5.0, np.arange(n), zeros, zeros, counts)

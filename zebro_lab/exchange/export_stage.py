@@ -30,7 +30,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[tuple[Path, ...]
     `legs` has the columns `t` and `theta1` to `theta6`, `slip_rig` those of a calibration, forces
     without the zero offset, `NAME_raw` the raw samples of a device. A Parquet table has the source
     in its metadata; beside CSV tables it stands in a `columns.toml`, which every command that reads
-    such a table takes into account. A damaged log is exported up to the damage.
+    such a table takes into account. A damaged log is exported without the damage.
 
     Args:
         folder: The run folder.

@@ -157,7 +157,7 @@ _FIELDS: Final = (
 def read_imu_messages(
     path: Path, *, topic: str | None = None, topics: Collection[str] = ()
 ) -> tuple[RawTable, str]:
-    """Read IMU messages of a ROS log as the columns of an IMU table, up to the first damage.
+    """Read IMU messages of a ROS log as the columns of an IMU table, without what is damaged.
 
     Args:
         path: The log: MCAP or a bag.

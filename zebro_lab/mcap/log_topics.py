@@ -63,7 +63,7 @@ def read_topic(
     topics: Collection[str] = (),
     parts: Callable[[LoggedMessage], Parts] = whole,
 ) -> TopicRows:
-    """Read the messages of one topic of a ROS log, up to the first damage.
+    """Read the messages of one topic of a ROS log, without what is damaged.
 
     Args:
         path: The log.

@@ -56,7 +56,7 @@ class SalvagedStreams:
 
     Attributes:
         streams: Samples of each device, by topic; host times since the start of the run [s].
-        damage: Why reading stopped before the end; None for a log read to its end.
+        damage: What is damaged, where, and how much is left out; None for a log without damage.
     """
 
     streams: dict[str, SampleColumns]
@@ -124,10 +124,10 @@ def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
 
 
 def read_raw_log(path: Path) -> SalvagedStreams:
-    """Read the raw samples of all devices from an MCAP log; a damaged log up to the damage.
+    """Read the raw samples of all devices from an MCAP log, without what is damaged.
 
     A message that cannot be decoded, or whose samples have another number of counts than those
-    before, counts as damage. Streams without samples are omitted.
+    first, counts as damage. Streams without samples are omitted.
 
     Raises:
         NotFound: The file does not exist.
@@ -144,7 +144,7 @@ def read_raw_log(path: Path) -> SalvagedStreams:
         earlier = parts.setdefault(topic, [])
         if earlier and earlier[0].counts.shape[1] != samples.counts.shape[1]:
             damage = f"the number of values per sample of {topic} changes"
-            break
-        earlier.append(samples)
+        else:
+            earlier.append(samples)
     streams = {topic: SampleColumns.joined(found) for topic, found in parts.items()}
     return SalvagedStreams(streams, damage)

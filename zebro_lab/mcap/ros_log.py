@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read messages of ROS logs up to the first damage: MCAP; bags in SQLite (.db3) or of ROS 1."""
+"""Read messages of ROS logs: MCAP without what is damaged; SQLite (.db3) and ROS 1 up to it."""
 
 from collections.abc import Collection
 from contextlib import redirect_stdout
@@ -43,7 +43,7 @@ def bag_files(path: Path) -> tuple[Path, ...]:
 
 
 def read_messages(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage], str | None]:
-    """Read all messages of some types from a ROS log, up to the first damage.
+    """Read all messages of some types from a ROS log, but for what is damaged.
 
     A message or a definition of a type that cannot be decoded counts as damage.
 
@@ -52,9 +52,10 @@ def read_messages(path: Path, types: Collection[str]) -> tuple[list[LoggedMessag
         types: Names of the types, such as `sensor_msgs/msg/JointState`, also for ROS 1.
 
     Returns:
-        The messages in the order of the log, and why reading stopped before the log's end; None
-        for a log read to its end. Of a bag of several MCAP files, all of them by time of logging,
-        and the damage of the first file that is damaged; the others are read nevertheless.
+        The messages in the order of the log, and what of it is damaged or cut off; None for a log
+        without damage. A bag other than MCAP is read up to its first damage. Of a bag of several
+        MCAP files, all of them by time of logging, and the damage of the first file that is
+        damaged; the others are read nevertheless.
 
     Raises:
         NotFound: The file does not exist, or the package `rosbags` for a bag.

@@ -45,7 +45,7 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
             first IMU if it has none. None for other devices.
 
     Returns:
-        The streams, of a damaged log up to the damage. Their source is `replay:RUN`, or
+        The streams, of a damaged log without the damage. Their source is `replay:RUN`, or
         `sim:replay:RUN` for simulated samples.
 
     Raises:

@@ -71,7 +71,7 @@ def require_profiles(folder: Path, manifest: RunManifest) -> None:
 
 
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
-    """Read the samples of a slip-rig run; of a damaged log those before the damage, with a note.
+    """Read the samples of a slip-rig run; of a damaged log without the damage, with a note.
 
     Raises:
         NotFound: The manifest or the log is missing.

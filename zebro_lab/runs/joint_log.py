@@ -153,7 +153,7 @@ class JointLog:
 def read_joint_log(
     path: Path, *, topic: str | None = None, topics: Collection[str] = ()
 ) -> JointLog:
-    """Read the joint states of a ROS log as a table, up to the first damage.
+    """Read the joint states of a ROS log as a table, without what is damaged.
 
     Topics that together hold the six legs, each on one topic, are read as one if none is chosen.
 

@@ -53,7 +53,7 @@ def is_recorded(path: Path) -> bool:
 def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
     """Read leg angles of a run: `t` [s] and `theta1` to `theta6` [rad], unwrapped.
 
-    Samples whose time does not increase are dropped. A damaged log is read up to the damage, with a
+    Samples whose time does not increase are dropped. A damaged log is read without that, with a
     note, and its checksum is not compared. Legs that the profile lacks have no column.
 
     Args:
@@ -94,7 +94,7 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
     """Read roll and pitch of a run; None without log, IMU profile or samples of an IMU.
 
     Of several IMUs (`imu1`, `imu2`, ...) the first that has a profile and samples is read. Samples
-    whose time does not increase are dropped; a damaged log is read up to the damage, and the log's
+    whose time does not increase are dropped; a damaged log is read without that, and the log's
     checksum is not compared.
 
     Raises:

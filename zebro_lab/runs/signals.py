@@ -147,7 +147,7 @@ class RunSignals:
 
 
 def read_signals(folder: Path) -> RunSignals:
-    """Read all streams of a recorded or imported run as curves, up to a damage of its log.
+    """Read all streams of a recorded or imported run as curves, but for a damage of its log.
 
     Raises:
         NotFound: The folder is not a run folder, or its log is missing.

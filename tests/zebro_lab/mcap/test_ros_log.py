@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Logs and bags of ROS are read up to their first damage, and say what they need."""
+"""Logs of ROS are read but for their damage, bags up to it; both say what they need."""
 
 import sys
 

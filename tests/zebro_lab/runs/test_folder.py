@@ -73,13 +73,19 @@ DAMAGE = {f"cut at {kept}": lambda data, kept=kept: data[: int(len(data) * kept)
 
 
 @pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
-def test_a_damaged_log_is_salvaged_up_to_the_damage_with_a_note(tmp_path, damage):
+def test_a_damaged_log_is_salvaged_but_for_the_damage_with_a_note(tmp_path, damage):
     folder = make_run(tmp_path, 5_000)
     log = folder / "log.mcap"
     log.write_bytes(damage(log.read_bytes()))
     run = read_slip_rig_run(folder)
     assert 1_000 <= len(run.table) <= 5_000
-    np.testing.assert_array_equal(run.table.t, make_table(5_000).t[: len(run.table)])
+    recorded = make_table(5_000).t
+    if damage is flipped:  # one chunk is lost, from the middle
+        assert len(run.table) == 4_900
+        assert set(run.table.t) < set(recorded)
+        assert run.table.t[-1] == recorded[-1]
+    else:
+        np.testing.assert_array_equal(run.table.t, recorded[: len(run.table)])
     assert "log.mcap is incomplete" in run.notes[0]
     assert f"; {len(run.table)} of 5000 samples were read" in run.notes[0]
     assert run.notes[0] in read_rig_data([folder]).notes

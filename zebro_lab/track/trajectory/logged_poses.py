@@ -31,7 +31,7 @@ _STATIC: Final = "tf_static"  # topic of transforms that never change
 def read_logged_poses(
     path: Path, *, plane: str, topic: str | None = None, topics: Collection[str] = ()
 ) -> tuple[str, RawTable]:
-    """Read poses of a ROS log, up to the first damage.
+    """Read poses of a ROS log, without what is damaged.
 
     Static transforms are left out: they hold the mounting of sensors, and no path.
 

@@ -2,16 +2,17 @@
 """Files of a run while it is recorded: log, profiles, manifest, and disk space for its end."""
 
 import contextlib
+import hashlib
+import io
 import os
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import IO, Final
+from typing import IO, Any, Final
 
 from zebro_lab.files.errors import RecordingError
-from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns
 from zebro_lab.runs.manifest import (
@@ -126,6 +127,26 @@ def identity(status: os.stat_result) -> tuple[int, int]:
     return status.st_dev, status.st_ino
 
 
+class HashedFile(io.BufferedWriter):
+    """Output file that computes its SHA-256 while it is written, from beginning to end.
+
+    Args:
+        raw: The file, new and open for writing.
+
+    Attributes:
+        sha256: Hash of all that was written.
+    """
+
+    def __init__(self, raw: io.RawIOBase) -> None:
+        super().__init__(raw)
+        self.sha256 = hashlib.sha256()
+
+    def write(self, data: Any) -> int:
+        """Write bytes at the end, and return their number; `OSError` if the disk fails."""
+        self.sha256.update(data)
+        return super().write(data)
+
+
 RESERVE: Final = 1 << 16
 """Disk space reserved in the run folder for log end and end record on a full disk [bytes]."""
 _RESERVE_FILE = ".reserve"
@@ -168,7 +189,7 @@ class RunFiles:
         streams = stored_streams(folder, profiles)
         self.streams = tuple(streams)
         (folder / _RESERVE_FILE).write_bytes(os.urandom(RESERVE))
-        self._file = (folder / LOG_FILE).open("xb")
+        self._file = HashedFile((folder / LOG_FILE).open("xb", buffering=0))
         try:
             self._place = OpenPlace(folder / LOG_FILE, self._file)
             self.log = LogWriter(
@@ -231,7 +252,7 @@ class RunFiles:
                 "cannot be completed. If it was moved, move it back; else record again"
             )
         self.folder = folder
-        log_sha256 = file_hash(folder / LOG_FILE) if whole else None
+        log_sha256 = self._file.sha256.hexdigest() if whole else None
         write_manifest(folder, replace(manifest, streams=self.log.written, log_sha256=log_sha256))
 
     def close(self) -> None:

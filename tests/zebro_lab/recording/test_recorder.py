@@ -2,6 +2,7 @@
 """A run folder is readable at every instant and always ends with its reason."""
 
 import errno
+import io
 import json
 import os
 import threading
@@ -15,6 +16,7 @@ from rig.device import Counters
 from rig.errors import RigError
 from support.recorders import PROFILE, count_in, recorder, some, until
 from zebro_lab.files.errors import AlreadyExists, RecordingError
+from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording import recorder as module
 from zebro_lab.recording import run_files
@@ -123,6 +125,22 @@ def test_a_run_is_never_overwritten(tmp_path, monkeypatch):
         recorder(tmp_path).__enter__()
     assert (run.folder / "run.json").read_text() == before
     assert json.loads(before)["exit_status"] == "completed"
+
+
+def test_the_end_of_a_run_reads_nothing_of_its_log_and_knows_its_checksum(tmp_path, monkeypatch):
+    real = io.open
+
+    def opened(file, mode="r", *args, **more):
+        assert not (str(file).endswith("log.mcap") and "r" in mode)
+        return real(file, mode, *args, **more)
+
+    with recorder(tmp_path) as run:
+        for first in range(0, 5000, 100):
+            run.write("legs", some(first, 100))
+        monkeypatch.setattr(io, "open", opened)
+    monkeypatch.undo()
+    assert run.failure is None
+    assert read_manifest(run.folder).log_sha256 == file_hash(run.folder / "log.mcap")
 
 
 def test_no_step_of_the_wall_clock_shows_in_the_log(tmp_path, monkeypatch):

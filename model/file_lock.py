@@ -23,3 +23,22 @@ def try_lock(handle: int) -> bool:
     except OSError:  # a file system without locks
         return True
     return True
+
+
+def is_locked(handle: int) -> bool | None:
+    """Return whether another open handle has a file locked; None where that cannot be told.
+
+    That is so on Windows and on file systems without locks. Others may ask at the same time.
+
+    Args:
+        handle: Handle of the file, to be closed after this: it has a shared lock.
+    """
+    if fcntl is None:
+        return None
+    try:
+        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:  # a file system without locks
+        return None
+    return False

@@ -2,8 +2,10 @@
 """Recorders of a robot's legs, and what they wrote."""
 
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
+from model.file_lock import try_lock
 from rig.device import Sample
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording.devices import profile_text
@@ -19,6 +21,14 @@ def recorder(data, *, label="test", **changes):
     )
     profiles = {"legs": (PROFILE, profile_text(PROFILE))}
     return RunRecorder(data, manifest=manifest, profiles=profiles, **changes)
+
+
+@contextmanager
+def being_recorded(folder):
+    """Lock the log of a run folder, as its recorder does."""
+    with (folder / "log.mcap").open("rb") as log:
+        assert try_lock(log.fileno())
+        yield
 
 
 def some(first, count):

@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any, Final
 
+from model.file_lock import try_lock
 from zebro_lab.files.errors import RecordingError
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns
@@ -191,6 +192,7 @@ class RunFiles:
         (folder / _RESERVE_FILE).write_bytes(os.urandom(RESERVE))
         self._file = HashedFile((folder / LOG_FILE).open("xb", buffering=0))
         try:
+            try_lock(self._file.fileno())  # until it is closed, the run is being recorded
             self._place = OpenPlace(folder / LOG_FILE, self._file)
             self.log = LogWriter(
                 self._file, streams=streams, start=start,

@@ -8,7 +8,6 @@ import typer
 
 from model.counted import counted
 from zebro_lab.files.source_names import is_simulated
-from zebro_lab.runs.exclusion import exclude_run, take_in_again
 from zebro_lab.terminal.output import TEXT, Output
 from zebro_lab.terminal.request_command import request_command
 
@@ -56,9 +55,8 @@ def _in_numbers(run: "ListedRun") -> dict[str, object]:
 @request_command()
 def exclude(run: RunFolder, why: Why = None, undo: Undo = False, output: Output = TEXT) -> None:
     """Exclude a run from every later calibration, or undo that; its data stay."""
-    from zebro_lab.runs.folder import require_ended
+    from zebro_lab.runs.exclusion import exclude_run, take_in_again
 
-    require_ended(run)
     if undo:
         manifest = take_in_again(run, why=why)
         output.say(f"{run.name} is no longer excluded from calibrations")

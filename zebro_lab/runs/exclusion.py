@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from zebro_lab.files.errors import DataError
+from zebro_lab.runs.folder import require_ended
 from zebro_lab.runs.manifest import RunManifest, read_manifest, write_manifest
 
 EXCLUDED: Final = "excluded"
@@ -25,6 +26,7 @@ def exclude_run(folder: Path, *, why: str) -> RunManifest:
     Raises:
         NotFound: The folder is not a run folder.
         DataError: The manifest is invalid, or the reason is blank.
+        RecordingError: The run is being recorded.
         OSError: The manifest cannot be written.
     """
     if not why.strip():
@@ -42,6 +44,7 @@ def take_in_again(folder: Path, *, why: str | None = None) -> RunManifest:
     Raises:
         NotFound: The folder is not a run folder.
         DataError: The manifest is invalid, or the run is not excluded.
+        RecordingError: The run is being recorded.
         OSError: The manifest cannot be written.
     """
     if read_manifest(folder).excluded is None:
@@ -62,7 +65,11 @@ def _written(folder: Path, did: str, why: str) -> RunManifest:
         folder: The run folder.
         did: `EXCLUDED` or `UNDONE`.
         why: The reason, which is kept with the present time.
+
+    Raises:
+        RecordingError: The run is being recorded: its end would undo what is written now.
     """
+    require_ended(folder)
     manifest = read_manifest(folder)
     entry = {"did": did, "why": why, "at": datetime.now(UTC).isoformat(timespec="seconds")}
     manifest = replace(

@@ -15,6 +15,7 @@ from typing import Final
 
 import numpy as np
 
+from model.file_lock import is_locked
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
@@ -33,7 +34,7 @@ RECOVERED: Final = "recovered"
 """State of a run whose recorder was killed: its samples end where the log ends."""
 _BOARD_TOPIC: Final = raw_topic("board")
 STILL_GROWING: Final = 3.0
-"""A log that changed less than this ago is being recorded; recorders write each second [s]."""
+"""Where files cannot be locked, a log that changed less than this ago is being recorded [s]."""
 
 
 @dataclass(frozen=True)
@@ -162,8 +163,8 @@ def find_runs(data_dir: Path) -> list[Path]:
 def run_state(folder: Path, manifest: RunManifest) -> str:
     """Return the state of a run: its exit status, `recording` or `recovered`.
 
-    A run whose manifest still says `recording` is `recovered` if its log is missing or was not
-    written for `STILL_GROWING` seconds: the recorder died.
+    A run whose manifest still says `recording` is `recovered` if its log is missing or no program
+    has it locked, as a recorder has until its end: the recorder died.
 
     Args:
         folder: Run folder.
@@ -172,8 +173,13 @@ def run_state(folder: Path, manifest: RunManifest) -> str:
     if manifest.exit_status != RECORDING:
         return manifest.exit_status
     log = folder / LOG_FILE
-    growing = log.is_file() and time.time() - log.stat().st_mtime < STILL_GROWING
-    return RECORDING if growing else RECOVERED
+    if not log.is_file():
+        return RECOVERED
+    with log.open("rb") as file:
+        locked = is_locked(file.fileno())
+    if locked is None:
+        locked = time.time() - log.stat().st_mtime < STILL_GROWING
+    return RECORDING if locked else RECOVERED
 
 
 def require_ended(folder: Path) -> None:
@@ -185,7 +191,7 @@ def require_ended(folder: Path) -> None:
         RecordingError: The run is being recorded, by `run_state`.
     """
     if run_state(folder, read_manifest(folder)) == RECORDING:
-        raise RecordingError(f"{folder} is being recorded; wait until it has ended")
+        raise RecordingError(f"{folder} is being recorded; end the recording first")
 
 
 def _require_constants(manifest: RunManifest, file: Path) -> None:

@@ -2,7 +2,12 @@
 """Runs are listed and excluded from the command line, with their reasons."""
 
 import os
+import time
 
+import pytest
+
+from model import file_lock
+from support.recorders import count_in, recorder, some, until
 from support.written_runs import edit, make_run
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.runs.manifest import read_manifest
@@ -21,15 +26,42 @@ def test_an_exclusion_can_be_undone_and_stays_on_record(tmp_path, run_command):
     assert "is not excluded" in again.err
 
 
-def test_a_run_that_is_being_recorded_is_not_excluded(tmp_path, run_command):
+@pytest.mark.parametrize("ahead", [-3600, 0, 3600])
+def test_a_run_that_is_being_recorded_is_not_excluded_whatever_a_clock_says(
+    tmp_path, run_command, monkeypatch, ahead
+):
+    here = time.time()
+    monkeypatch.setattr(time, "time", lambda: here + ahead)
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 10))
+        until(lambda: count_in(run) == 10)
+        before = (run.folder / "run.json").read_text()
+        for undo in ((), ("--undo",)):
+            refused = run_command("exclude", run.folder, "--why", "belt slipped", *undo)
+            assert refused.code == 1
+        assert "is being recorded; end the recording first" in (
+            run_command("exclude", run.folder, "--why", "belt slipped").err
+        )
+        assert (run.folder / "run.json").read_text() == before
+        assert "  recording  " in run_command("runs", tmp_path).out
+    assert run_command("exclude", run.folder, "--why", "belt slipped").code == 0
+    assert read_manifest(run.folder).excluded == {"why": "belt slipped"}
+
+
+def test_a_run_is_excluded_as_soon_as_its_recorder_is_dead(tmp_path, run_command):
     folder = make_run(tmp_path)
     edit(folder, exit_status="recording", stop=None)
-    before = (folder / "run.json").read_text()
-    refused = run_command("exclude", folder, "--why", "belt slipped")
-    assert refused.code == 1
-    assert "is being recorded" in refused.err
-    assert (folder / "run.json").read_text() == before
-    os.utime(folder / "log.mcap", (0, 0))  # a kill left it behind
+    os.utime(folder / "log.mcap", (time.time() + 3600,) * 2)
+    assert "  recovered  " in run_command("runs", tmp_path).out
+    assert run_command("exclude", folder, "--why", "belt slipped").code == 0
+
+
+def test_without_locks_the_age_of_the_log_tells(tmp_path, run_command, monkeypatch):
+    monkeypatch.setattr(file_lock, "fcntl", None)
+    folder = make_run(tmp_path)
+    edit(folder, exit_status="recording", stop=None)
+    assert run_command("exclude", folder, "--why", "belt slipped").code == 1
+    os.utime(folder / "log.mcap", (0, 0))
     assert run_command("exclude", folder, "--why", "belt slipped").code == 0
 
 

@@ -68,7 +68,7 @@ test-lowest: $(LOWEST_STAMP) ## the tests with the lowest versions allowed, on P
 
 # Long tests that watch a clock run alone.
 TIMED := tests/long/test_recording.py tests/long/test_experiment_faults.py tests/benchmarks/faults \
-  tests/zebro_lab/test_stops.py
+  tests/long/test_besieged_run.py tests/zebro_lab/test_stops.py
 
 test-long: $(STAMP) ## coverage and other statistical claims, under an hour on two cores; tables at the end
 	$(BIN)/python -m pytest -m long -s --timeout 3600 $(TIMED)

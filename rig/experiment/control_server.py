@@ -10,8 +10,7 @@ import hmac
 import secrets
 import socket
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Generator
 from functools import partial
 from typing import Final, Self
 
@@ -26,30 +25,14 @@ IDLE_TIMEOUT: Final = 600.0
 TOKEN_TIMEOUT: Final = 1.0
 """Time within which a client must have sent a line with the token [s]."""
 MOST_CLIENTS: Final = 16
-"""Number of connections; for a further one the oldest is closed that has not shown the token."""
+"""Number of connections; for a further one the oldest is closed."""
 MOST_NEW: Final = 8
 """Number of connections that are accepted in a turn; a run has other things to do."""
 MOST_WAITING: Final = 64
 """Number of connections that the system holds until they are accepted."""
 TURN: Final = 0.02
 """Interval between the turns in which each client is looked at [s]."""
-
-
-@dataclass
-class _Client:
-    """Connection of one client.
-
-    Attributes:
-        link: The connection, which does not block.
-        until: Time at which it is closed, unless a line with the token comes before [s].
-        known: Whether it has shown the token.
-        received: Beginning of a line.
-    """
-
-    link: socket.socket
-    until: float
-    known: bool = False
-    received: bytes = b""
+WRONG_TOKEN: Final = "error: wrong token; the token of this run is in its file control.json"  # noqa: S105
 
 
 class ControlServer:
@@ -71,7 +54,7 @@ class ControlServer:
         self.port = 0
         self.token = secrets.token_urlsafe(16)
         self._control = control
-        self._clients: list[_Client] = []
+        self._talks: list[Generator[bool, None, None]] = []
         self._held = contextlib.ExitStack()
 
     def __enter__(self) -> Self:
@@ -80,7 +63,7 @@ class ControlServer:
             held.enter_context(listener)
             listener.setblocking(False)
             self.port = listener.getsockname()[1]
-            held.callback(lambda: [client.link.close() for client in self._clients])
+            held.callback(lambda: [talk.close() for talk in self._talks])
             turn = partial(self._take_turn, listener)
             thread = repeating(turn, every=TURN, name="control socket", control=self._control)
             held.enter_context(thread)
@@ -91,57 +74,47 @@ class ControlServer:
         self._held.close()
 
     def _take_turn(self, listener: socket.socket) -> None:
-        """Accept new clients, in the place of the oldest without the token, and attend to all."""
-        clients = [*self._clients, *_accepted(listener)]
-        clients.sort(key=lambda client: client.known)  # the first have waited longest
-        for client in clients[:-MOST_CLIENTS]:
-            client.link.close()
-        self._clients = clients[-MOST_CLIENTS:]
-        self._clients = [client for client in self._clients if self._attend(client)]
+        """Accept new clients, close the connections of the oldest, and attend to the others."""
+        with contextlib.suppress(OSError):  # no other waits, it is gone, or no descriptor is free
+            for _ in range(MOST_NEW):
+                self._talks.append(self._talk(listener.accept()[0]))
+        for talk in self._talks[:-MOST_CLIENTS]:
+            talk.close()
+        self._talks = [talk for talk in self._talks[-MOST_CLIENTS:] if next(talk, False)]
 
-    def _attend(self, client: _Client) -> bool:
-        """Answer the lines of a client that have arrived; close the connection or return True.
+    def _talk(self, link: socket.socket) -> Generator[bool, None, None]:
+        """Answer the lines of a client, yielding True in each turn until the connection is closed.
 
         The end of the connection ends a line, too.
         """
-        kept = True
-        try:
-            data = client.link.recv(LONGEST_LINE)
-            lines = (client.received + data).split(b"\n")
-            client.received = lines.pop() if data else b""
-            known = all(self._answer(client, line) for line in lines if line)
-            kept = known and len(data) > 0 and len(client.received) < LONGEST_LINE
-        except BlockingIOError:
-            pass
-        except OSError:
-            kept = False
-        if kept and time.monotonic() < client.until:
-            return True
-        client.link.close()
-        return False
-
-    def _answer(self, client: _Client, line: bytes) -> bool:
-        """Execute the command of a line `TOKEN COMMAND`; return whether the token was right."""
-        token, _, command = line.decode("utf-8", "replace").strip().partition(" ")
-        client.known = hmac.compare_digest(token.encode(), self.token.encode())
-        client.until = time.monotonic() + IDLE_TIMEOUT
-        reply = "error: wrong token; the token of this run is in its file control.json"
-        if client.known:
-            try:
-                reply = f"ok {self._control.execute(command, who='socket')}"
-            except ProtocolError as problem:
-                reply = f"error: {problem}"
-        client.link.sendall(f"{reply}\n".encode())
-        return client.known
-
-
-def _accepted(listener: socket.socket) -> Iterator[_Client]:
-    """Accept and yield the clients that wait, at most `MOST_NEW`."""
-    with contextlib.suppress(OSError):  # there is no other, it is gone, or no descriptor is free
-        for _ in range(MOST_NEW):
-            link, _ = listener.accept()
+        until, received = time.monotonic() + TOKEN_TIMEOUT, b""
+        with link, contextlib.suppress(OSError):
             link.setblocking(False)
-            yield _Client(link, time.monotonic() + TOKEN_TIMEOUT)
+            while time.monotonic() < until:
+                try:
+                    data = link.recv(LONGEST_LINE)
+                except BlockingIOError:
+                    yield True
+                    continue
+                lines = (received + data).split(b"\n")
+                received = lines.pop() if data else b""
+                for line in filter(None, lines):
+                    token, _, command = line.decode("utf-8", "replace").strip().partition(" ")
+                    known = hmac.compare_digest(token.encode(), self.token.encode())
+                    link.sendall(f"{self._reply(command) if known else WRONG_TOKEN}\n".encode())
+                    if not known:
+                        return
+                    until = time.monotonic() + IDLE_TIMEOUT
+                if not data or len(received) >= LONGEST_LINE:
+                    return
+                yield True
+
+    def _reply(self, command: str) -> str:
+        """Execute a command and return the reply: `ok ...`, or `error: ...` for an invalid one."""
+        try:
+            return f"ok {self._control.execute(command, who='socket')}"
+        except ProtocolError as problem:
+            return f"error: {problem}"
 
 
 def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -> str:

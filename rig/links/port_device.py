@@ -9,6 +9,7 @@ from typing import Final
 
 import serial
 from serial.tools import list_ports
+from serial.tools.list_ports_common import ListPortInfo
 
 from rig.errors import DeviceMismatch, LinkError
 
@@ -40,13 +41,12 @@ def take_port(
         failed.callback(close)
         _claim_terminal(port)
         found = usb_device(str(port.port))
-        if expected is not None and found is None:
-            raise LinkError("it is unplugged again")
         if expected not in {None, found}:
-            raise DeviceMismatch(
+            problem = (
                 f"another USB device has come back at port {port.port}: found {found}, expected "
                 f"{expected}; name the port by its link in /dev/serial/by-id"
             )
+            raise DeviceMismatch(problem) if found else LinkError(problem)
         failed.pop_all()
     return found
 
@@ -64,15 +64,16 @@ def usb_device(port: str) -> str | None:
         found = {each.device: each for each in list_ports.comports() if each.vid is not None}
     except TypeError as gone:
         raise LinkError("a device was unplugged meanwhile") from gone
-    ids = {
-        name: f"{each.vid:04x}:{each.pid:04x} {each.serial_number or 'without serial number'}"
-        for name, each in found.items()
-    }
-    name = port if port in found else os.path.realpath(port)
-    if name not in found:
+    own = found.get(port) or found.get(os.path.realpath(port))
+    if own is None:
         return None
-    unique = found[name].serial_number and list(ids.values()).count(ids[name]) == 1
-    return ids[name] if unique else f"{ids[name]} in socket {found[name].location}"
+    alike = [_ids(each) for each in found.values()].count(_ids(own))
+    return _ids(own) + ("" if own.serial_number and alike == 1 else f" in socket {own.location}")
+
+
+def _ids(device: ListPortInfo) -> str:
+    """Return vendor, product and serial number of a USB device."""
+    return f"{device.vid:04x}:{device.pid:04x} {device.serial_number or 'without serial number'}"
 
 
 def _claim_terminal(port: serial.Serial) -> None:

@@ -191,10 +191,14 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
         NotFound, DataError: `resume` is set, and there is no readable journal.
         AlreadyExists: The folder has a journal, and `resume` is not set.
         SettingsError: The journal is of another plan, or an emergency stop is latched and `reset`
-            is not set.
+            is not set; or one of these files is a link.
         RecordingError: The latch file cannot be created or opened.
         OSError: The journal or the latch file cannot be written.
     """
+    for file in (data / JOURNAL_FILE, data / LATCH_FILE):
+        if file.is_symlink() or (file.is_file() and file.stat().st_nlink > 1):
+            what = "is a link: a file elsewhere would change with it; put a copy in its place"
+            raise SettingsError(what, file=file)
     writer, latch = JournalWriter(data), EmergencyLatch(data)
     journal = _resumed(data, plan_text) if resume else None
     if journal is None and os.path.lexists(data / JOURNAL_FILE):
@@ -225,20 +229,13 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
 
 
 def _resumed(data: Path, plan_text: str) -> Journal:
-    """Read the journal as `read_journal`, to append to it.
-
-    Raises:
-        SettingsError: It was started with another plan, or is a link to a file elsewhere.
-    """
-    journal, file = read_journal(data), data / JOURNAL_FILE
-    if file.is_symlink() or file.stat().st_nlink > 1:
-        what = "is one file with another name (a link), which would change too; put a copy there"
-        raise SettingsError(what, file=file)
+    """Read the journal as `read_journal`; SettingsError where it was started with another plan."""
+    journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
             "was started with another plan or another text of it, comments included; use the text "
             "in the first line of this file, or choose another folder with --data",
-            file=file,
+            file=data / JOURNAL_FILE,
         )
     return journal
 

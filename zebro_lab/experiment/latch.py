@@ -55,18 +55,12 @@ class EmergencyLatch:
         """Create the file, not latched, with its disk space; leave an existing file as it is.
 
         Raises:
-            OSError: The file cannot be created or opened, is not a regular file, or has another
-                name, under which it must not change.
+            OSError: The file cannot be created or opened, or is not a regular file.
         """
         try:
-            handle = self._open(os.O_WRONLY)
+            os.close(self._open(os.O_WRONLY))
         except FileNotFoundError:
             self._write(b"", os.O_CREAT | os.O_EXCL)
-        else:
-            names = os.fstat(handle).st_nlink
-            os.close(handle)
-            if names > 1:
-                raise OSError(errno.EMLINK, "it is one file with another name", str(self._file))
 
     def latch(self, reason: str) -> None:
         """Write the reason of an emergency stop, cut to 256 characters, into the prepared file.

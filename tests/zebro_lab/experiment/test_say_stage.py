@@ -2,8 +2,6 @@
 """A running experiment is commanded from elsewhere; an emergency stop reaches it by two ways."""
 
 import json
-import subprocess
-import sys
 import time
 
 import pytest
@@ -13,6 +11,7 @@ from rig.errors import LinkError, ProtocolError
 from rig.experiment.control import Control
 from rig.experiment.control_server import ControlServer
 from rig.safety import StopCategory
+from support.floods import flooded
 from zebro_lab.experiment.journal import read_journal
 from zebro_lab.experiment.latch import LATCH_FILE, EmergencyLatch
 from zebro_lab.experiment.say_stage import CONTROL_FILE, command_run
@@ -79,50 +78,19 @@ def test_a_stop_that_has_one_way_left_says_which_failed(served, tmp_path):
         command_run(tmp_path, "emergency")
 
 
-FLOOD = """
-import socket, sys, time
-port, idle, talking = map(int, sys.argv[1:])
-links = [None] * (idle + talking)
-print("flooding", flush=True)
-while True:
-    for number, link in enumerate(links):
-        try:
-            if link is None:
-                links[number] = link = socket.socket()
-                link.setblocking(False)
-                link.connect_ex(("127.0.0.1", port))
-            if number < talking:
-                link.send(b"garbage " * 100 + b"\\n")
-            link.recv(1000) or 1 / 0
-        except (BlockingIOError, InterruptedError):
-            pass
-        except (OSError, ZeroDivisionError):
-            link.close()
-            links[number] = None
-    time.sleep(0.001)
-"""
-
-
 def stop_in_a_flood(lab, plan, data, *, before=lambda: None):
     """Run a plan that, at its second point, is flooded by clients, and then stopped."""
     control = Control()
 
     def flood_and_stop():
         port = json.loads((data / CONTROL_FILE).read_text())["port"]
-        flood = subprocess.Popen(
-            [sys.executable, "-c", FLOOD, str(port), "100", "20"], stdout=subprocess.PIPE, text=True
-        )
-        try:
-            assert flood.stdout.readline() == "flooding\n"
-            time.sleep(0.3)
+        with flooded(port, idle=100, talking=20):
+            time.sleep(0.1)
             before()
             assert f"emergency stop by {LATCH_FILE}" in command_run(data, "emergency smoke")
             end = time.monotonic() + 10
             while not control.stop.latched and time.monotonic() < end:
                 time.sleep(0.01)
-        finally:
-            flood.kill()
-            flood.communicate()
 
     return lab.run(plan, data, watcher=lab.StopAfter(2, flood_and_stop), control=control)
 

@@ -205,8 +205,11 @@ def command(
     output: Output = TEXT,
 ) -> None:
     """Send a command to the running experiment that records to DIR."""
-    from zebro_lab.experiment.say_stage import command_run
+    from zebro_lab.experiment.say_stage import command_run, is_emergency
 
+    unknown = next((word for word in words if word.startswith("--")), None)
+    if unknown is not None and not is_emergency(words[0]):  # a stop takes any text
+        raise typer.BadParameter(f"there is no option {unknown}")
     reply = command_run(data, " ".join(words))
     output.say(reply)
     output.document("rig say", {"reply": reply})

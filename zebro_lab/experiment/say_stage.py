@@ -17,6 +17,11 @@ LONGEST_REASON: Final = 256
 """Largest length of the reason of an emergency stop; the rest is left out [characters]."""
 
 
+def is_emergency(command: str) -> bool:
+    """Return whether a command is an emergency stop, with whatever text."""
+    return command.lower().split()[:1] == [EMERGENCY]
+
+
 def command_run(data: Path, command: str) -> str:
     """Send a command to the experiment that runs in a folder, and return the reply.
 
@@ -33,8 +38,8 @@ def command_run(data: Path, command: str) -> str:
         RigError: The experiment does not answer, or rejects the command; or an emergency stop
             reached it in neither way.
     """
-    words = storable_note(command).split()
-    if words and words[0].lower() == EMERGENCY:
+    if is_emergency(command):
+        words = storable_note(command).split()
         return _stop_at_once(data, " ".join(words[1:])[:LONGEST_REASON])
     return send_command(*_address(data), command)
 

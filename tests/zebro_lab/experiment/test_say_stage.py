@@ -57,6 +57,11 @@ def test_words_that_look_like_options_are_part_of_the_reason(served, tmp_path):
     assert EmergencyLatch(tmp_path).reason == "--smoke -x"
 
 
+def test_a_mistyped_option_of_another_command_is_refused(served, tmp_path):
+    done = CliRunner().invoke(app, ["rig", "say", "safe", "--dtaa", "x", "--data", str(tmp_path)])
+    assert (done.exit_code, served.stop.pending) == (2, None)
+
+
 def test_other_commands_are_not_latched(served, tmp_path):
     assert command_run(tmp_path, "note no emergency") == "done"
     command_run(tmp_path, "safe")

@@ -6,7 +6,6 @@ checks the free disk space and that the folder still exists.
 """
 
 import queue
-import shutil
 import threading
 import time
 from collections.abc import Callable, Collection, Mapping
@@ -25,8 +24,7 @@ from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record, why_excluded
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording.recorder import RunRecorder
-from zebro_lab.recording.run_files import identity
-from zebro_lab.recording.status import StreamCounts
+from zebro_lab.recording.run_files import identity, require_space
 from zebro_lab.runs.manifest import RunManifest
 
 MOST_WAITING: Final = 20_000
@@ -82,7 +80,8 @@ class ExperimentFolder:
         self._plan = plan
         self._manifest = manifest
         self._profiles = profiles
-        self._counts = StreamCounts(streams, clock)
+        self._streams = streams
+        self._opened: dict[Stream, Counters] = {}
         self._written: Mapping[str, Counters] = {}
         self._clock = clock
         self._in_step = in_step
@@ -119,7 +118,7 @@ class ExperimentFolder:
                 self._recorder.event(f"guards off: {start.guards_off}")
 
         self._require_working()
-        self._counts.restart()
+        self._opened = {stream: stream.counters for stream in self._streams}
         self._put(open_now, wait=True)
 
     def write(self, readings: Readings, batch: Batch) -> None:
@@ -128,8 +127,8 @@ class ExperimentFolder:
         The `readings`, which follow from the raw samples, are ignored; see `RunSink.write`.
         """
         del readings
-        raw, counted = batch.raw, self._counts.due()
-        self._written = self._counts.now()
+        raw = batch.raw
+        self._written = counted = self._counted()
 
         def write_now() -> None:
             """Write the samples to the open run, if any; called in the writing thread."""
@@ -156,7 +155,7 @@ class ExperimentFolder:
             SinkFailed: The queue is full; in simulated time also if writing failed.
         """
         # The guards have looked on after the last sample of a point that is judged.
-        counted = self._counts.now() if verdict is None else self._written
+        counted = self._counted() if verdict is None else self._written
         self._put(lambda: self._close_now(verdict, reason, counted), wait=True)
 
     def event(self, kind: str, text: str) -> None:
@@ -164,8 +163,7 @@ class ExperimentFolder:
 
         Args:
             kind: Kind of event, such as `note`.
-            text: Description of the event; of an `end` that is `completed` although writing failed,
-                the journal has the failure instead.
+            text: Description; `completed` as an `end` gives way to a failure of writing.
 
         Raises:
             SinkFailed: The queue is full; or, the event queued, the writing thread has failed
@@ -249,13 +247,17 @@ class ExperimentFolder:
                 label = f"{manifest.label.partition(' again')[0]} again {again}"
                 manifest = replace(manifest, label=label)
 
+    def _counted(self) -> Mapping[str, Counters]:
+        """Return what each stream has counted since the run was opened; in the acquiring thread."""
+        return {stream.name: stream.counters.since(then) for stream, then in self._opened.items()}
+
     def _close_now(
         self, verdict: PointVerdict | None, reason: str, counted: Mapping[str, Counters]
     ) -> None:
         """Write the verdict with the end record, and the journal's entry of the point.
 
-        A point whose recorder failed, also while it closed, is not accepted, and the failure is
-        stored for the acquiring thread. Nothing is written if no run is open.
+        A point whose recorder failed, also while it closed, is not accepted; the failure is stored.
+        Nothing is written if no run is open.
         """
         recorder, self._recorder = self._recorder, None
         if recorder is None or self._start is None:
@@ -333,7 +335,7 @@ class ExperimentFolder:
             job.done.set()
 
     def _check_disk(self) -> None:
-        """Raise SinkFailed where the folder is gone, the recorder failed or the disk is full.
+        """Raise where the folder is gone, the recorder failed or the disk is full.
 
         Nothing is checked within `DISK_PERIOD` of the last check.
         """
@@ -345,9 +347,4 @@ class ExperimentFolder:
             raise SinkFailed(f"the folder {self._data} was removed or replaced")
         if self._recorder is not None and self._recorder.failure is not None:
             raise SinkFailed(self._recorder.failure)
-        free = shutil.disk_usage(self._data).free
-        if free < self._least_room:
-            raise SinkFailed(
-                f"the disk of {self._data} has {free / 1e6:.0f} MB free; expected "
-                f"the plan's limits.free_space, {self._least_room:g} bytes: free some space"
-            )
+        require_space(self._data, self._least_room)

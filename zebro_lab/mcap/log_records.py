@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
-from mcap.records import Channel, McapRecord, Message, Schema
+from mcap.records import Channel, Message, Schema
 
 from model.counted import counted
 from zebro_lab.files.errors import DataError, ZebroLabError
@@ -53,72 +53,36 @@ def read_log_messages(
             nor a whole chunk.
         ZebroLabError: `decoder` raised it.
     """
-    log = _Log(decoder)
+    known: dict[tuple[type, int], Any] = {}
+    decoders: dict[int, Decode | None] = {}
     messages: list[LoggedMessage] = []
     with open_file(path) as file:
         records = SoundRecords(file)
         for record, is_sure in records:
             if not isinstance(record, Message):
-                log.describe(record, is_sure=is_sure)
-            elif (message := log.decode(record)) is not None:
-                messages.append(message)
+                key = type(record), record.id
+                known[key] = record if is_sure else known.get(key, record)
+                continue
+            number, where = record.channel_id, "a message that the log does not describe"
+            try:
+                channel = known[Channel, number]
+                schema: Any = known[Schema, channel.schema_id] if channel.schema_id else None
+                if number not in decoders:
+                    where = f"the log's description of {channel.topic}"
+                    decoders[number] = None  # where it fails, it does so once
+                    decoders[number] = schema and decoder(schema)
+                if (decode := decoders[number]) is not None:
+                    where = f"a message of {channel.topic}"
+                    content = decode(record.data)
+                    found = LoggedMessage(channel.topic, record.log_time, content, schema.name)
+                    messages.append(found)
+            except ZebroLabError:
+                raise
+            except Exception as error:  # decoders answer damage with whatever went wrong inside
+                records.faults.append(f"{where}: {error}")
     if not records.is_mcap:
         raise DataError("is not an MCAP file", file=path)
-    found = [*records.faults, *log.faults]
-    if not found:
-        return messages, None
-    more = f", and {counted(len(found) - 1, 'further fault')}" if len(found) > 1 else ""
-    return messages, f"{found[0]}{more}; {counted(records.skipped, 'byte')} left out"
-
-
-class _Log:
-    """Descriptions of a log's messages, and the decoders of those that are wanted.
-
-    Args:
-        decoder: As for `read_log_messages`.
-
-    Attributes:
-        faults: Why a message, or all of a channel, was not decoded.
-    """
-
-    def __init__(self, decoder: Callable[[Schema], Decode | None]) -> None:
-        self.faults: list[str] = []
-        self._decoder = decoder
-        self._schemas: dict[int, Schema] = {}
-        self._channels: dict[int, Channel] = {}
-        self._decoders: dict[int, Decode | None] = {}
-
-    def describe(self, record: McapRecord, *, is_sure: bool) -> None:
-        """Take a schema or channel; one that no checksum covers only where there is none yet."""
-        if isinstance(record, Schema) and (is_sure or record.id not in self._schemas):
-            self._schemas[record.id] = record
-        if isinstance(record, Channel) and (is_sure or record.id not in self._channels):
-            self._channels[record.id] = record
-
-    def decode(self, record: Message) -> LoggedMessage | None:
-        """Decode a message; None if it is not wanted, or has a fault, which is added to `faults`.
-
-        Raises:
-            ZebroLabError: The decoder of its schema raised it.
-        """
-        number, where = record.channel_id, "a message without its channel's description"
-        try:
-            channel = self._channels[number]
-            if channel.schema_id == 0:
-                return None
-            schema = self._schemas[channel.schema_id]
-            where = f"the log's description of {schema.name}"
-            if number not in self._decoders:
-                self._decoders[number] = None  # where that fails, the others are not tried either
-                self._decoders[number] = self._decoder(schema)
-            decode = self._decoders[number]
-            if decode is None:
-                return None
-            where = f"a message of {channel.topic}"
-            content = decode(record.data)
-        except ZebroLabError:
-            raise
-        except Exception as error:  # libraries answer damage with whatever went wrong inside them
-            self.faults.append(f"{where}: {error}")
-            return None
-        return LoggedMessage(channel.topic, record.log_time, content, schema.name)
+    first, *others = records.faults or [None]
+    if first is not None and others:
+        first += f", and {counted(len(others), 'further fault')}"
+    return messages, first and f"{first}; {counted(records.skipped, 'byte')} left out"

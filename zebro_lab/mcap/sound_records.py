@@ -3,59 +3,41 @@
 
 The readers of the library `mcap` end at the first damage, or need the index at the end, which a
 truncated file has lost. A chunk is found by the name of its compression, at a fixed place in it,
-and proved by its checksum.
+and proved by two lengths that agree and its checksum.
 """
 
 import re
 import struct
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from io import BytesIO
 from os import fstat
-from typing import BinaryIO, Final, NamedTuple
+from typing import Any, BinaryIO, Final, NamedTuple
 
-from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, DataEnd, McapRecord, Message, Schema
-from mcap.stream_reader import breakup_chunk
+from mcap.records import Chunk, DataEnd, Message
+from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
 _RECORD: Final = struct.Struct("<BQ")
 """Opcode and length of a record, before its content."""
-_CHUNK: Final = struct.Struct("<BQQQQII")
-"""Beginning of a chunk: opcode, length, two times, unpacked size, checksum, length of a name."""
-_COUNT: Final = struct.Struct("<Q")
-_COMPRESSIONS: Final = (b"zstd", b"lz4", b"")
-_NAMED: Final = re.compile(rb"(?s)\x04\0{3}zstd|\x03\0{3}lz4|\x06.{36}\0{4}")
-"""Name of a compression with its length; or the beginning of a chunk that is not compressed."""
-_BEFORE_NAME: Final = 37
-_LONGEST: Final = _CHUNK.size + 4 + _COUNT.size
+_NAMED: Final = rb".{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})"
+"""Beginning of a chunk behind its opcode, up to the name of its compression, with its length."""
+_LAYOUT: Final = re.compile(rb"(?s)." + _NAMED + rb"(.{8})")
+_BEGINS: Final = re.compile(rb"(?s)\x06(?=" + _NAMED + rb")")
+_LONGEST: Final = 53
 """Longest beginning of a chunk, before its data [bytes]."""
 _BLOCK: Final = 1 << 20
 """Number of bytes that are read at a time to search for a chunk, or for a checksum."""
-_READ: Final[Mapping[int, Callable[[ReadDataStream, int], McapRecord]]] = {
-    Opcode.SCHEMA: lambda content, _: Schema.read(content),
-    Opcode.CHANNEL: lambda content, _: Channel.read(content),
-    Opcode.MESSAGE: Message.read,
-    Opcode.DATA_END: lambda content, _: DataEnd.read(content),
-}
-"""Reads the content of a record outside chunks, by opcode."""
-_FOOTER: Final = _RECORD.size + 20 + len(MAGIC)
-"""Size of the end of a file, from the last record on [bytes]."""
+_READ: Final = {Opcode.CHUNK, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.DATA_END}
 
 
 class _Part(NamedTuple):
-    """Chunk, or another record, with the place behind it.
+    """Content of a chunk, or another record, the place behind it, and whether it is a chunk."""
 
-    Attributes:
-        records: Schemas, channels and messages of it.
-        end: Place of the next record.
-        is_chunk: Whether it is a chunk.
-    """
-
-    records: list[McapRecord]
+    records: Sequence[Any]
     end: int
-    is_chunk: bool
+    is_chunk: bool = False
 
 
 class SoundRecords:
@@ -77,19 +59,17 @@ class SoundRecords:
         self.faults = [] if self.is_mcap else ["the first bytes are not those of MCAP"]
         self.skipped = 0
         self._why = ""
-        self._ended = self._chunked = False
 
-    def __iter__(self) -> Iterator[tuple[McapRecord, bool]]:
+    def __iter__(self) -> Iterator[tuple[Any, bool]]:
         """Yield the records in order, and whether each is from a chunk, with its checksum.
 
         Descriptions in the summary, at the file's end, come first: the first chunk may be damaged.
         """
         yield from self._summary()
-        self._ended = False
         at = sound = len(MAGIC)  # `sound` is the end of the last whole chunk
+        chunked = False
         while at < self._size:
-            self._why = "bytes are damaged"
-            part = self._chunk_at(at) or self._record_at(at)
+            part = self._part_at(at)
             if part is None:
                 self.faults.append(f"{self._why} at byte {at}")
                 at = self._next_chunk(sound)
@@ -98,11 +78,12 @@ class SoundRecords:
             for record in part.records:
                 if isinstance(record, DataEnd):
                     self._compare(at, record.data_section_crc)
-                yield record, part.is_chunk
+                elif part.is_chunk or not (chunked and isinstance(record, Message)):
+                    yield record, part.is_chunk
             at = part.end
             if part.is_chunk:
-                sound, self.is_mcap, self._chunked = at, True, True
-        if not (self._ended or self.faults):
+                sound, self.is_mcap, chunked = at, True, True
+        if not self.faults and self._read(self._size - len(MAGIC), len(MAGIC)) != MAGIC:
             self.faults.append("the file ends early")
 
     def _read(self, at: int, count: int) -> bytes:
@@ -110,69 +91,48 @@ class SoundRecords:
         self._file.seek(at)
         return self._file.read(count)
 
-    def _summary(self) -> Iterator[tuple[McapRecord, bool]]:
-        """Yield schemas and channels of the summary; nothing if the file's end is damaged."""
-        end = self._read(max(self._size - _FOOTER, 0), _FOOTER)
-        if len(end) < _FOOTER or not end.endswith(MAGIC):
-            return
-        (at,) = _COUNT.unpack_from(end, _RECORD.size)
-        while 0 < at < self._size and (part := self._record_at(at)) is not None:
-            yield from ((r, False) for r in part.records if isinstance(r, Schema | Channel))
+    def _summary(self) -> Iterator[tuple[Any, bool]]:
+        """Yield schemas and channels of the summary; nothing if the file's end is missing."""
+        end = self._read(max(self._size - 37, 0), 37)  # the last record, and the magic bytes
+        at = int.from_bytes(end[9:17], "little") if end.endswith(MAGIC) else self._size
+        while at < self._size and (part := self._part_at(at)) and not part.is_chunk:
+            yield from ((each, False) for each in part.records if hasattr(each, "id"))
             at = part.end
 
-    def _chunk_at(self, at: int) -> _Part | None:
-        """Return the whole chunk at a place, whose opcode alone may be damaged; else None."""
+    def _part_at(self, at: int) -> _Part | None:
+        """Return the chunk or record at a place; None if it is damaged, and why in `_why`."""
+        self._why = "bytes are damaged"
         head = self._read(at, _LONGEST)
-        if len(head) < _LONGEST:
-            return None
-        opcode, length, _, _, _, checksum, named = _CHUNK.unpack_from(head)
-        behind = _CHUNK.size + min(named, 4)
-        if head[_CHUNK.size : behind] not in _COMPRESSIONS or named > 4:
-            return None
-        end = at + behind + _COUNT.size + _COUNT.unpack_from(head, behind)[0]
-        # The data may go on behind what is unpacked: one of two lengths that differ is damaged.
-        if end != at + _RECORD.size + length or end > self._size:
-            return None
-        if opcode != Opcode.CHUNK and not (checksum and named):
-            return None
-        content = self._read(at + _RECORD.size, end - at - _RECORD.size)
-        try:
-            chunk = Chunk.read(ReadDataStream(BytesIO(content)))
-            return _Part(breakup_chunk(chunk, validate_crc=True), end, is_chunk=True)
-        except Exception as error:  # libraries answer damage with whatever went wrong inside them
-            self._why = f"a chunk is damaged ({str(error) or type(error).__name__})"
-            return None
-
-    def _record_at(self, at: int) -> _Part | None:
-        """Return the record at a place that is not a chunk; None if it is damaged or a chunk."""
-        head = self._read(at, _RECORD.size).ljust(_RECORD.size, b"\0")
-        opcode, length = _RECORD.unpack(head)
+        opcode, length = _RECORD.unpack(head[: _RECORD.size].ljust(_RECORD.size, b"\0"))
         end = at + _RECORD.size + length
         if end > self._size:
             self._why = "the file ends early"
-        if opcode in (0, Opcode.CHUNK) or end > self._size:
+            return None
+        layout = _LAYOUT.match(head)
+        size = layout and layout.end() + int.from_bytes(layout[1], "little")
+        if opcode == 0 or (at + (size or 0) == end) != (opcode == Opcode.CHUNK):
             return None
         if opcode == Opcode.FOOTER:
-            self._ended = self._read(end, len(MAGIC) + 1) == MAGIC
-            return _Part([], self._size, is_chunk=False) if self._ended else None
-        if opcode not in _READ or (opcode == Opcode.MESSAGE and self._chunked):
-            return _Part([], end, is_chunk=False)
-        content = ReadDataStream(BytesIO(self._read(at + _RECORD.size, length)))
+            return _Part([], self._size) if self._read(end, _LONGEST) == MAGIC else None
+        if opcode not in _READ:
+            return _Part([], end)
         try:
-            return _Part([_READ[opcode](content, length)], end, is_chunk=False)
-        except Exception:  # as above
+            content = BytesIO(self._read(at, end - at))
+            record = next(StreamReader(content, skip_magic=True, emit_chunks=True).records)
+            if isinstance(record, Chunk):
+                return _Part(breakup_chunk(record, validate_crc=True), end, is_chunk=True)
+            return _Part([record], end)
+        except Exception as error:  # libraries answer damage with whatever went wrong inside them
+            self._why = f"a chunk is damaged ({str(error) or type(error).__name__})"
             return None
 
     def _next_chunk(self, at: int) -> int:
         """Return the place of the first whole chunk from a place on; without, the file's size."""
         for begin in range(at, self._size, _BLOCK):
-            block = self._read(begin, _BLOCK + _LONGEST)
-            found = _NAMED.search(block)
-            while found is not None:
-                ahead = 0 if found[0].startswith(b"\6") else _BEFORE_NAME
-                if found.start() >= ahead and self._chunk_at(begin + found.start() - ahead):
-                    return begin + found.start() - ahead
-                found = _NAMED.search(block, found.start() + 1)
+            for found in _BEGINS.finditer(self._read(begin, _BLOCK + _LONGEST)):
+                part = self._part_at(begin + found.start())
+                if part is not None and part.is_chunk:
+                    return begin + found.start()
         return self._size
 
     def _compare(self, end: int, checksum: int) -> None:

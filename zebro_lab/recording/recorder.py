@@ -28,6 +28,8 @@ from zebro_lab.runs.manifest import RunManifest
 
 FLUSH_EVERY: Final = 0.1
 """Interval at which the queues are written and flushed [s]."""
+COUNT_EVERY: Final = 1.0
+"""Interval at which counters are logged, and rates computed [s]."""
 SYNC_EVERY: Final = 1.0
 """Interval of flushing the log to the disk (fsync) and of checks of free space [s]."""
 LIMIT: Final = 100_000
@@ -88,6 +90,7 @@ class RunRecorder:
         self._queues: dict[str, SampleQueue] = {}
         self._notes: deque[Callable[[LogWriter], None]] = deque()
         self._counters: dict[str, Counters] = {}
+        self._counted: dict[str, float] = {}
         self._failure: str | None = None
         self._failing = threading.Lock()
         self._reason = "completed"
@@ -121,27 +124,21 @@ class RunRecorder:
         return False
 
     def event(self, text: str, *, level: int = INFO) -> None:
-        """Queue an event with the present time for the log, without blocking.
-
-        Args:
-            text: Description of the event.
-            level: Severity: `INFO`, `WARNING` or `ERROR`.
-        """
+        """Queue an event of a level, such as `WARNING`, with the present time for the log."""
         now = self._clock.now()
         self._notes.append(lambda log: log.event(now, text, level=level))
 
     def count(self, stream: str, counters: Counters) -> None:
-        """Queue the counters of a stream for the log, and store them for the end record.
+        """Store the counters of a stream for the end record, and queue them for the log.
 
-        Args:
-            stream: Name of the stream.
-            counters: Samples received, lost, damaged and so on so far.
+        They are queued every `COUNT_EVERY`; those of the run's end are logged in any case.
         """
         now = self._clock.now()
         self._counters[stream] = counters
-        self._notes.append(
-            lambda log: log.count(now, stream, counters, dropped=self.dropped(stream))
-        )
+        if now - self._counted.get(stream, self.start) >= COUNT_EVERY:
+            self._counted[stream] = now
+            dropped = self.dropped(stream)
+            self._notes.append(lambda log: log.count(now, stream, counters, dropped=dropped))
 
     def dropped(self, stream: str) -> int:
         """Return the number of samples of a stream dropped so far because its queue was full."""

@@ -22,7 +22,7 @@ from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_device
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.run_files import needing_threads
-from zebro_lab.recording.status import COUNT_EVERY, RecordStatus, StreamWatch, reading_failure
+from zebro_lab.recording.status import RecordStatus, StreamWatch, reading_failure
 from zebro_lab.robot.leg_warnings import WARNING as SUSPECTED
 from zebro_lab.robot.leg_warnings import leg_warnings
 from zebro_lab.runs.manifest import RunManifest, read_manifest
@@ -248,11 +248,8 @@ def _watch(
     clock: Clock,
 ) -> str | None:
     """Poll until duration, stop or failure ends the recording; return the failure, or None."""
-    counted = clock.now()
     while (left := streams.left(now := clock.now())) > 0:
-        if now - counted >= COUNT_EVERY:
-            counted = now
-            streams.count()
+        streams.count()
         problem = streams.problem(now)
         reason = watcher.stop_reason()
         if problem is not None or reason is not None:

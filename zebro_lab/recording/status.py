@@ -7,12 +7,9 @@ from pathlib import Path
 from typing import Final
 
 from rig.acquisition import Acquisition, Device
-from rig.clock import Clock
-from rig.device import Counters, Sample, Stream
-from zebro_lab.recording.recorder import RunRecorder
+from rig.device import Counters, Sample
+from zebro_lab.recording.recorder import COUNT_EVERY, RunRecorder
 
-COUNT_EVERY: Final = 1.0
-"""Interval at which counters are logged and rates computed [s]."""
 FIRST_SAMPLE: Final = 10.0
 """Timeout for the first sample of every stream, if a duration is set; it counts from then [s]."""
 
@@ -114,7 +111,7 @@ class StreamWatch:
         return problem
 
     def count(self) -> None:
-        """Pass the counters of all streams to the recorder, for the log."""
+        """Pass the counters of all streams to the recorder."""
         for name, reader in self._readers.items():
             self._recorder.count(name, reader.counters)
 
@@ -152,41 +149,6 @@ class StreamWatch:
                 for reader in self._readers.values():
                     reader.end_at(self._began + self._duration)
         return self._began
-
-
-class StreamCounts:
-    """Counters of streams for one run of several, from its opening on.
-
-    It is used in the thread that reads the streams, between two reads.
-
-    Args:
-        streams: The streams.
-        clock: Clock of host time.
-    """
-
-    def __init__(self, streams: Iterable[Stream], clock: Clock) -> None:
-        self._streams = tuple(streams)
-        self._clock = clock
-        self.restart()
-
-    def restart(self) -> None:
-        """Count from now on."""
-        self._opened = [stream.counters for stream in self._streams]
-        self._told = self._clock.now()
-
-    def now(self) -> Mapping[str, Counters]:
-        """Return what each stream has counted so far, by its name."""
-        return {
-            stream.name: stream.counters.since(opened)
-            for stream, opened in zip(self._streams, self._opened, strict=True)
-        }
-
-    def due(self) -> Mapping[str, Counters]:
-        """Return the same where `COUNT_EVERY` has passed since the last time; else nothing."""
-        if self._clock.now() - self._told < COUNT_EVERY:
-            return {}
-        self._told = self._clock.now()
-        return self.now()
 
 
 def reading_failure(readers: Mapping[str, Acquisition]) -> str | None:

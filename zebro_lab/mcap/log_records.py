@@ -82,7 +82,7 @@ def read_log_messages(
                 records.faults.append(f"{where}: {error}")
     if not records.is_mcap:
         raise DataError("is not an MCAP file", file=path)
-    first, *others = records.faults or [None]
-    if first is not None and others:
-        first += f", and {counted(len(others), 'further fault')}"
-    return messages, first and f"{first}; {counted(records.skipped, 'byte')} left out"
+    if not (faults := records.faults):
+        return messages, None
+    left_out = f"{counted(len(faults), 'fault')}, {counted(records.skipped, 'byte')} left out"
+    return messages, f"{faults[0]}; {left_out}"

@@ -4,10 +4,9 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
+from io import BytesIO
 from typing import IO, Final
 
-from mcap.data_stream import RecordBuilder
-from mcap.records import Channel, Schema
 from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import CompressionType, IndexType, Writer
 
@@ -84,12 +83,15 @@ class LogWriter:
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
         self._messages: Counter[str] = Counter()
-        self._copies = RecordBuilder()
+        # Descriptions stand in the first chunk, at the end, and here, should that chunk be damaged.
+        copies = BytesIO()
+        self._writers = (Writer(copies, use_chunking=False), self._writer)
         self._register(EVENTS, LOG)
         for name, stream in streams.items():
             self._register(raw_topic(name), stream.schema, stream.metadata)
             self._register(f"/{name}/counters", _COUNTERS)
-        file.write(self._copies.end())
+        self._writers[0].flush()
+        file.write(copies.getvalue())
         for name, text in attachments.items():
             self._writer.add_attachment(start_ns, start_ns, name, "application/toml", text.encode())
 
@@ -148,24 +150,14 @@ class LogWriter:
         return self._start_ns + round((host_time - self._start) * 1e9)
 
     def _register(self, topic: str, schema: str, metadata: Mapping[str, str] | None = None) -> None:
-        """Register the channel of a topic, and its schema where it is new.
-
-        The library writes both in the first chunk and at the end of the file alone. Copies outside
-        the chunks let a log be read whose first chunk is damaged and whose end is missing.
-        """
-        if schema not in self._schemas:
-            text = _SCHEMAS[schema].encode()
-            number = self._writer.register_schema(schema, SchemaEncoding.ROS2, text)
+        """Register the channel of a topic, and its schema where it is new."""
+        for writer in self._writers if schema not in self._schemas else ():
+            number = writer.register_schema(schema, SchemaEncoding.ROS2, _SCHEMAS[schema].encode())
             self._schemas[schema] = number
-            Schema(id=number, data=text, encoding=SchemaEncoding.ROS2, name=schema).write(
-                self._copies
+        for writer in self._writers:
+            self._channels[topic] = writer.register_channel(
+                topic, MessageEncoding.CDR, self._schemas[schema], dict(metadata or {})
             )
-        given = {
-            "topic": topic, "message_encoding": MessageEncoding.CDR,
-            "schema_id": self._schemas[schema], "metadata": dict(metadata or {}),
-        }  # fmt: skip
-        self._channels[topic] = number = self._writer.register_channel(**given)
-        Channel(id=number, **given).write(self._copies)
 
     def _add(self, topic: str, stamp: int, message: bytes) -> None:
         """Write a message with the next sequence number of its topic, at a stamp [ns]."""

@@ -7,20 +7,19 @@ and proved by two lengths that agree and its checksum.
 """
 
 import re
-import struct
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from io import BytesIO
 from os import fstat
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import Any, BinaryIO, Final, TypeAlias
 
 from mcap.opcode import Opcode
 from mcap.records import Chunk, DataEnd, Message
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
-_RECORD: Final = struct.Struct("<BQ")
-"""Opcode and length of a record, before its content."""
+_HEAD: Final = 9
+"""Size of opcode and length of a record, before its content [bytes]."""
 _NAMED: Final = rb".{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})"
 """Beginning of a chunk behind its opcode, up to the name of its compression, with its length."""
 _LAYOUT: Final = re.compile(rb"(?s)." + _NAMED + rb"(.{8})")
@@ -29,15 +28,9 @@ _LONGEST: Final = 53
 """Longest beginning of a chunk, before its data [bytes]."""
 _BLOCK: Final = 1 << 20
 """Number of bytes that are read at a time to search for a chunk, or for a checksum."""
+_Part: TypeAlias = tuple[list[Any], int, bool]
+"""Content of a chunk, or another record; the place behind it; and whether it is a chunk."""
 _READ: Final = {Opcode.CHUNK, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.DATA_END}
-
-
-class _Part(NamedTuple):
-    """Content of a chunk, or another record, the place behind it, and whether it is a chunk."""
-
-    records: Sequence[Any]
-    end: int
-    is_chunk: bool = False
 
 
 class SoundRecords:
@@ -75,13 +68,14 @@ class SoundRecords:
                 at = self._next_chunk(sound)
                 self.skipped += at - sound
                 continue
-            for record in part.records:
+            records, end, is_chunk = part
+            for record in records:
                 if isinstance(record, DataEnd):
                     self._compare(at, record.data_section_crc)
-                elif part.is_chunk or not (chunked and isinstance(record, Message)):
-                    yield record, part.is_chunk
-            at = part.end
-            if part.is_chunk:
+                elif is_chunk or not (chunked and isinstance(record, Message)):
+                    yield record, is_chunk
+            at = end
+            if is_chunk:
                 sound, self.is_mcap, chunked = at, True, True
         if not self.faults and self._read(self._size - len(MAGIC), len(MAGIC)) != MAGIC:
             self.faults.append("the file ends early")
@@ -95,16 +89,15 @@ class SoundRecords:
         """Yield schemas and channels of the summary; nothing if the file's end is missing."""
         end = self._read(max(self._size - 37, 0), 37)  # the last record, and the magic bytes
         at = int.from_bytes(end[9:17], "little") if end.endswith(MAGIC) else self._size
-        while at < self._size and (part := self._part_at(at)) and not part.is_chunk:
-            yield from ((each, False) for each in part.records if hasattr(each, "id"))
-            at = part.end
+        while at < self._size and (part := self._part_at(at)):
+            yield from ((each, False) for each in part[0] if hasattr(each, "id"))
+            at = part[1]
 
     def _part_at(self, at: int) -> _Part | None:
         """Return the chunk or record at a place; None if it is damaged, and why in `_why`."""
         self._why = "bytes are damaged"
-        head = self._read(at, _LONGEST)
-        opcode, length = _RECORD.unpack(head[: _RECORD.size].ljust(_RECORD.size, b"\0"))
-        end = at + _RECORD.size + length
+        head = self._read(at, _LONGEST).ljust(_HEAD, b"\0")
+        opcode, end = head[0], at + _HEAD + int.from_bytes(head[1:_HEAD], "little")
         if end > self._size:
             self._why = "the file ends early"
             return None
@@ -113,27 +106,28 @@ class SoundRecords:
         if opcode == 0 or (at + (size or 0) == end) != (opcode == Opcode.CHUNK):
             return None
         if opcode == Opcode.FOOTER:
-            return _Part([], self._size) if self._read(end, _LONGEST) == MAGIC else None
+            return ([], self._size, False) if self._read(end, _LONGEST) == MAGIC else None
         if opcode not in _READ:
-            return _Part([], end)
+            return [], end, False
         try:
             content = BytesIO(self._read(at, end - at))
             record = next(StreamReader(content, skip_magic=True, emit_chunks=True).records)
-            if isinstance(record, Chunk):
-                return _Part(breakup_chunk(record, validate_crc=True), end, is_chunk=True)
-            return _Part([record], end)
+            is_chunk = isinstance(record, Chunk)
+            records = breakup_chunk(record, validate_crc=True) if is_chunk else [record]
         except Exception as error:  # libraries answer damage with whatever went wrong inside them
             self._why = f"a chunk is damaged ({str(error) or type(error).__name__})"
             return None
+        return records, end, is_chunk
 
     def _next_chunk(self, at: int) -> int:
         """Return the place of the first whole chunk from a place on; without, the file's size."""
-        for begin in range(at, self._size, _BLOCK):
-            for found in _BEGINS.finditer(self._read(begin, _BLOCK + _LONGEST)):
-                part = self._part_at(begin + found.start())
-                if part is not None and part.is_chunk:
-                    return begin + found.start()
-        return self._size
+        places = (
+            begin + found.start()
+            for begin in range(at, self._size, _BLOCK)
+            for found in _BEGINS.finditer(self._read(begin, _BLOCK + _LONGEST))
+        )
+        parts = ((place, self._part_at(place)) for place in places)
+        return next((place for place, part in parts if part and part[2]), self._size)
 
     def _compare(self, end: int, checksum: int) -> None:
         """Compare the checksum of all bytes before a place with the file's, 0 if it has none."""

@@ -83,7 +83,7 @@ def flip(recorded, bit):
         (chunk,) = lost
         begin = 0 if chunk == 0 else recorded.ends[chunk - 1]
         assert begin <= bit // 8 < recorded.ends[chunk], bit
-        size = int(damage.split("; ")[-1].split(" byte")[0])
+        size = int(damage.split(", ")[-1].split(" byte")[0])
         assert size >= 0.5 * (recorded.ends[1] - recorded.ends[0])
     return lost
 
@@ -119,7 +119,7 @@ def test_a_hole_costs_the_chunks_in_it_and_says_where(recorded, fill):
     lost, damage = lost_chunks(recorded.copy)
     assert lost == {5, 6, 7, 8, 9}
     assert f"byte {recorded.ends[4]}" in damage
-    assert f"; {recorded.ends[9] - recorded.ends[4]} bytes left out" in damage
+    assert f"1 fault, {recorded.ends[9] - recorded.ends[4]} bytes left out" in damage
 
 
 def test_two_holes_are_both_counted(recorded):
@@ -129,7 +129,7 @@ def test_two_holes_are_both_counted(recorded):
     recorded.copy.write_bytes(data)
     lost, damage = lost_chunks(recorded.copy)
     assert lost == {3, 20}
-    assert "further fault" in damage
+    assert "2 faults" in damage
 
 
 def test_no_run_hangs_on_its_first_chunk(recorded):

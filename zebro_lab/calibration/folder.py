@@ -47,6 +47,8 @@ CALIBRATION = ResultKind(
 )
 """Kind of a calibration folder; `walks/` inside was fitted with its law and is removed with it."""
 
+_LEAST = 1e-12
+"""Least mean of a parameter that is above 0, in its unit."""
 _ADVICE = "name a slip.toml or the folder that calibrate-slip wrote"
 SUMMARY_COLUMNS = (
     "parameter", "symbol", "unit", "mean", "sd", "q05", "median", "q95", "prior", "contraction",
@@ -104,7 +106,9 @@ def write_tables(
     (folder / "summary.csv").write_text(summary_csv(calibration), encoding="utf-8")
     if isinstance(calibration.comparison, LawScores):
         (folder / LAWS_CSV).write_text(laws_csv(calibration.comparison), encoding="utf-8")
-    posterior_tree(calibration).to_netcdf(folder / POSTERIOR, engine="h5netcdf")
+    content = io.BytesIO()  # HDF5 itself crashes where the disk is full
+    posterior_tree(calibration).to_netcdf(content, engine="h5netcdf")
+    (folder / POSTERIOR).write_bytes(content.getvalue())
 
 
 def read_slip(path: Path) -> SlipCurve:
@@ -168,11 +172,16 @@ def _curve(content: Mapping[str, Any]) -> SlipCurve:
     law = slip_law(content["law"]["name"], **options)
     k, tested = len(law.parameters), content["tested"]
     means = [content["parameters"][p.name]["mean"] for p in law.parameters]
+    values = _numbers("parameters", means, (k,))
+    for p, value in zip(law.parameters, values, strict=True):
+        if not (p.lower or _LEAST) <= value <= p.upper:
+            expected = f"from {p.lower:g}{' (excluded)' * (not p.lower)} to {p.upper:g}"
+            raise ValueError(f"{p.name} has the mean {value:g}; expected a number {expected}")
     load_low, load_high = _numbers("tested.normal_force", tested["normal_force"], (2,))
     slip_low, slip_high = _numbers("tested.slip_ratio", tested["slip_ratio"], (2,))
     return SlipCurve(
         law=law,
-        values=_numbers("parameters", means, (k,)),
+        values=values,
         covariance=_numbers("covariance.matrix", content["covariance"]["matrix"], (k, k)),
         definition=SlipDefinition(content["slip_definition"]),
         load_range=(float(load_low), float(load_high)),

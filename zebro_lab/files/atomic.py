@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
+from model.file_lock import try_lock
 from zebro_lab.files.errors import AlreadyExists
 
 
@@ -30,7 +31,7 @@ def atomic_write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
     target = Path(path)
     draft = target.with_name(draft_name(target))
     try:
-        with draft.open("xb") as file:
+        with naming(target), draft.open("xb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
@@ -77,17 +78,59 @@ def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
     """
     folder = Path(target).absolute()
     _require_empty(folder, target)
-    draft = nearest_folder(folder) / draft_name(folder)
-    try:
-        draft.mkdir()
+    with naming(folder), draft_folder(folder) as draft:
         yield draft
         sync_files(draft)
         _require_empty(folder, target)
         folder.parent.mkdir(parents=True, exist_ok=True)
         draft.replace(folder)
         sync_folder(folder.parent)
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Add a path to an `OSError` of the body that names no file, such as that of a full disk."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None and error.errno is not None:
+            error.filename = str(path)
+        raise
+
+
+@contextmanager
+def draft_folder(folder: Path) -> Iterator[Path]:
+    """Create and lock a hidden draft for a folder during the body; remove it at the end.
+
+    Unlocked drafts beside it, which killed processes have left, are removed first.
+    """
+    ground = nearest_folder(folder)
+    for stale in ground.glob(f".*.{8 * '[0-9a-f]'}.part"):
+        with _lock_of(stale) as is_stale:
+            if is_stale and stale.is_dir():
+                shutil.rmtree(stale, ignore_errors=True)
+    draft = ground / draft_name(folder)
+    try:
+        draft.mkdir()
+        with _lock_of(draft):
+            yield draft
     finally:
         shutil.rmtree(draft, ignore_errors=True)
+
+
+@contextmanager
+def _lock_of(draft: Path) -> Iterator[bool]:
+    """Lock a draft during the body; yield whether the lock was free, False on any OSError."""
+    handle = -1
+    is_free = False
+    with suppress(OSError):
+        handle = os.open(draft, os.O_RDONLY)
+        is_free = try_lock(handle)
+    try:
+        yield is_free
+    finally:
+        if handle >= 0:
+            os.close(handle)
 
 
 def nearest_folder(path: Path) -> Path:

@@ -6,17 +6,15 @@ other files in the folder belong to the user: they are kept when the result is r
 result that would overwrite one raises an error.
 """
 
-import glob
 import os
-import shutil
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from model.file_lock import try_lock
-from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
+from rig.exclusive import Exclusive
+from zebro_lab.files.atomic import draft_folder, nearest_folder, sync_files
 from zebro_lab.files.documents import json_text
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.folder_manifest import MANIFEST, listed_outputs, read_json_object
@@ -24,6 +22,8 @@ from zebro_lab.files.provenance import file_hash, software, software_commit
 from zebro_lab.files.replacement import previous_of, recover, replace_folder
 
 _GLOB: Final = "*"
+_claims: Final[dict[Path, Exclusive]] = {}
+"""Locks of the result folders that this process is about to write."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,7 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
     """Check that a result folder can be created or replaced, before anything is computed.
 
     An interrupted replacement of the folder, or of a result inside it, is first finished or undone.
+    No other process can then replace the folder until this one has written it, or ends.
 
     Args:
         out: Folder that is to be written.
@@ -63,6 +64,7 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
             the manifest lists was changed; a file to be written exists and is not listed;
             `.out.previous` cannot be removed; `out` is an input, or has one among the files to be
             replaced; or another process is replacing it.
+        InUse: Another process has called this function, and has not written the folder yet.
         NotWritten: The nearest existing parent folder, or the folder itself, cannot be written to.
         DataError: A replacement was interrupted, and what is left of it cannot be renamed.
     """
@@ -89,6 +91,8 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
     for place in (ground, *([folder] if folder.is_dir() else ())):
         if not os.access(place, os.W_OK | os.X_OK):
             raise NotWritten(f"{place} is not writable; choose another folder with --out")
+    name, what = f"result:{folder}", f"{out} as --out"
+    _claims.setdefault(folder, Exclusive(name, what=what, shared=True)).take()
 
 
 @contextmanager
@@ -111,13 +115,13 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
     Raises:
         AlreadyExists: As in `require_replaceable`, now or at the end; then also a user's file has
             the name of any file that was written.
-        NotWritten: The parent folder cannot be written to, or the draft cannot be moved to `out`.
-        DataError: As in `require_replaceable`.
-        OSError: The draft, its files or the manifest cannot be written.
+        NotWritten: The parent folder, the draft, its files or the manifest cannot be written, or
+            the draft cannot be moved to `out`.
+        DataError, InUse: As in `require_replaceable`.
     """
     require_replaceable(out, kind)
     folder = real_place(out)
-    with _draft_of(folder) as draft:
+    with _claims.pop(folder), writing(out), draft_folder(folder) as draft:
         yield draft
         document = {
             "schema": kind.schema,
@@ -135,8 +139,7 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
             _require_free(folder, written, kind, names)
             return names
 
-        with writing(out):
-            replace_folder(folder, draft, owned=owned)
+        replace_folder(folder, draft, owned=owned)
 
 
 def real_place(path: Path) -> Path:
@@ -265,38 +268,3 @@ def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]
         raise AlreadyExists(
             f"{out} as --out would replace {path}, which this command reads; choose another --out"
         )
-
-
-@contextmanager
-def _draft_of(folder: Path) -> Iterator[Path]:
-    """Create and lock a hidden draft for a folder during the body; remove it at the end.
-
-    Unlocked drafts of killed processes are removed first.
-    """
-    ground = nearest_folder(folder)
-    for stale in ground.glob(f".{glob.escape(folder.name)}.????????.part"):
-        with _lock_of(stale) as is_stale:
-            if is_stale:
-                shutil.rmtree(stale, ignore_errors=True)
-    draft = ground / draft_name(folder)
-    try:
-        draft.mkdir()
-        with _lock_of(draft):
-            yield draft
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
-
-
-@contextmanager
-def _lock_of(draft: Path) -> Iterator[bool]:
-    """Lock a draft during the body; yield whether the lock was free, False on any OSError."""
-    handle = -1
-    is_free = False
-    with suppress(OSError):
-        handle = os.open(draft, os.O_RDONLY)
-        is_free = try_lock(handle)
-    try:
-        yield is_free
-    finally:
-        if handle >= 0:
-            os.close(handle)

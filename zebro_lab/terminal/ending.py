@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Error handling of commands: one line for a known error, a traceback for an unknown one."""
 
+import errno
 import os
 import sys
 from collections.abc import Callable
@@ -12,6 +13,8 @@ from zebro_lab.files.errors import SettingsError, ZebroLabError, shortened, show
 from zebro_lab.terminal.stopping import StoppedBySignal
 from zebro_lab.terminal.timely_output import leave_at_once, say_in_time
 
+_FULL: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+"""Numbers of the errors of a full or broken disk."""
 ERROR: Final = 1
 WRONG_USAGE: Final = 2
 _PLACES: Final = {
@@ -23,19 +26,21 @@ _PLACES: Final = {
 def run(app: Callable[[], object]) -> None:
     """Run a Typer app, which ends with `SystemExit`; known errors are one line and exit code 1.
 
-    Known errors are those of the project, and operating system errors that name a file; the line is
-    on stderr. A wrong value of an option (a `SettingsError` about one) has exit code 2, as wrong
-    usage has that Typer finds. Other exceptions pass unchanged, with a traceback.
+    Known errors are those of the project, operating system errors that name a file, a full disk or
+    memory, and files or folders nested too deep; the line is on stderr. A wrong value of an option
+    (a `SettingsError` about one) has exit code 2, as wrong usage has that Typer finds. Other
+    exceptions pass unchanged, with a traceback.
     """
     try:
         app()
     except Exception as error:
         _raise_stop_behind(error)
-        message = f"{error}{_advice(error)}" if _is_known(error) else _of_a_file(error)
+        message = f"{error}{_advice(error)}" if _is_known(error) else _of_the_system(error)
         if message is None:
             raise
         code = WRONG_USAGE if _is_about_option(error) else ERROR
-        if not say_in_time(f"error: {shortened(shown(message))}", err=True):
+        # At an exit Python would flush again what cannot be printed.
+        if not say_in_time(f"error: {shortened(shown(message))}", err=True) or _is_full(error):
             leave_at_once(code)
         raise SystemExit(code) from None
 
@@ -52,12 +57,26 @@ def _advice(error: Exception) -> str:
     return f"; this profile belongs to {place}" if place else ""
 
 
-def _of_a_file(error: Exception) -> str | None:
-    """Format an `OSError` that names a file as "FILE: reason"; return None for other errors."""
+def _of_the_system(error: Exception) -> str | None:
+    """Format an `OSError` that names a file as "FILE: reason", and what is full or too deep.
+
+    None for other errors.
+    """
+    if isinstance(error, MemoryError):
+        return "the memory is full; end other programs, or give less data at once"
+    if isinstance(error, RecursionError):
+        return "folders, or the content of a file, are nested too deep; expected some 300 levels"
+    if _is_full(error):
+        return f"the output cannot be written ({error}); free some space"
     if not isinstance(error, OSError) or error.filename is None:
         return None
     name = error.filename if isinstance(error.filename, int) else os.fsdecode(error.filename)
     return f"{name}: {error.strerror or error}"
+
+
+def _is_full(error: Exception) -> bool:
+    """Return whether an output without a name, such as stdout, cannot be written."""
+    return isinstance(error, OSError) and error.filename is None and error.errno in _FULL
 
 
 def _is_about_option(error: Exception) -> bool:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`slip.toml` read back, and every way in which it may not be one."""
 
+import resource
 import tomllib
 
 import numpy as np
@@ -39,6 +40,11 @@ DAMAGE = {
     "missing parameter": ("friction = { mean = 0.4 }", ""),
     "parameter without a mean": ("{ mean = 0.4 }", "0.4"),
     "text for a number": ("mean = 0.4", "mean = 'big'"),
+    "mean next to 0": ("mean = 0.4", "mean = 1e-320"),
+    "mean of 0": ("mean = 20.0", "mean = 0.0"),
+    "negative mean": ("mean = 20.0", "mean = -20.0"),
+    "mean beyond its range": ("mean = 1.5", "mean = 2.5"),
+    "mean that is none": ("mean = 1.5", "mean = nan"),
     "ragged covariance": ("[1.0, 0.0, 0.0]", "[1.0, 0.0]"),
     "covariance of other parameters": (", [0.0, 0.0, 0.0001]", ""),
     "one end of a range": ("[2.0, 13.0]", "[2.0]"),
@@ -108,6 +114,20 @@ def test_a_fit_is_read_back_with_its_curve_and_draws(tmp_path):
     text = (tmp_path / "slip.toml").read_text()
     assert "SIMULATED data: nothing here was measured." in text
     assert len((tmp_path / "summary.csv").read_text().splitlines()) > k
+
+
+def test_draws_for_which_there_is_no_space_are_an_error_of_the_system(tmp_path):
+    """HDF5 crashes, instead of raising, where it writes to a full disk itself."""
+    calibration = short_calibration()
+    write_tables(tmp_path, calibration, inputs={})
+    sizes = sorted(path.stat().st_size for path in tmp_path.iterdir())
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (sum(sizes[-2:]) // 2, limits[1]))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            write_tables(tmp_path, calibration, inputs={})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
 
 def test_the_lateral_force_is_in_the_result_where_it_was_measured(tmp_path):

@@ -99,3 +99,22 @@ def test_another_thread_is_not_refused():
     thread.start()
     thread.join()
     assert ran == [1]
+
+
+def test_what_a_killed_process_left_beside_is_removed(tmp_path):
+    (tmp_path / ".earlier run.0123abcd.part").mkdir()
+    (tmp_path / ".mine.part").mkdir()
+    with atomic_folder(tmp_path / "second run"), atomic_folder(tmp_path / "third run"):
+        pass  # a living one keeps its draft
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        ".mine.part", "second run", "third run",
+    ]  # fmt: skip
+
+
+def test_an_error_without_a_name_gets_that_of_the_file(tmp_path, monkeypatch):
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(OSError, match=r"No space left on device: '.*report\.html'"):
+        atomic_write_bytes(tmp_path / "report.html", b"new")

@@ -2,11 +2,15 @@
 """Results replace what the same command made, whole or not at all, and nothing of anybody else."""
 
 import json
+import resource
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from rig.errors import InUse
 from support.written_tracks import content, path_from, write_track
 from zebro_lab.files.errors import NotWritten, ZebroLabError
 from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
@@ -27,6 +31,45 @@ def test_a_foreign_file_of_a_name_that_is_written_is_kept(tmp_path):
     with pytest.raises(ZebroLabError, match=r"a\.csv"):
         write(out)
     assert content(out) == {"a.csv": b"my own comparison"}
+
+
+def test_a_full_disk_is_one_error_and_keeps_the_earlier_result(tmp_path):
+    out = tmp_path / "out"
+    write(out)
+    before = content(out)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    try:
+        with (
+            pytest.raises(NotWritten, match=r"out cannot be written \(File too large\)"),
+            result_folder(out, KIND, content={}) as draft,
+        ):
+            (draft / "a.csv").write_bytes(bytes(2000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert content(out) == before
+
+
+FIRST = """
+import sys
+from pathlib import Path
+from zebro_lab.files.result_folder import ResultKind, require_replaceable
+require_replaceable(Path(sys.argv[1]), ResultKind("mine", "my command", ("a.csv",)))
+print("computing", flush=True)
+sys.stdin.read()
+"""
+
+
+def test_the_second_of_two_writers_is_refused_while_the_first_lives(tmp_path):
+    out = tmp_path / "out"
+    command = [sys.executable, "-c", FIRST, str(out)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as first:
+        assert first.stdout.readline() == b"computing\n"
+        with pytest.raises(InUse, match=f"as --out is in use by process {first.pid}"):
+            require_replaceable(out, KIND)
+        first.kill()
+    write(out)
+    write(out)
 
 
 def test_a_result_that_a_person_changed_is_kept(tmp_path):
@@ -77,13 +120,14 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
 
 def test_drafts_of_killed_writers_are_removed_and_those_of_living_ones_kept(tmp_path):
     (tmp_path / ".track.0123abcd.part").mkdir()
-    (tmp_path / ".tracks.0123abcd.part").mkdir()
+    (tmp_path / ".other.0123abcd.part").mkdir()
+    (tmp_path / ".tracks.mine.part").mkdir()
     with track_folder(
         tmp_path / "track", **path_from(0.0), source="real", settings={}, inputs={}, report={}
     ) as draft:
         write_track(tmp_path / "track", 1.0)
         assert draft.is_dir()
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".tracks.0123abcd.part", "track"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".tracks.mine.part", "track"]
     assert read_track_manifest(tmp_path / "track")["settings"] == {}
 
 

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: MIT
 """How a command ends."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 import typer
 
@@ -64,6 +68,33 @@ def test_what_the_file_system_says_of_a_file_is_one_line_and_exit_1(error, said,
         run(app_that_raises(error))
     assert ended.value.code == 1
     assert capsys.readouterr() == ("", f"error: {said}\n")
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (MemoryError("Unable to allocate 41.6 MiB"), "memory is full"),
+        (RecursionError("maximum recursion depth exceeded"), "nested too deep"),
+    ],
+)
+def test_what_the_machine_or_the_data_are_too_small_or_deep_for_is_one_line(error, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        run(app_that_raises(error))
+    assert ended.value.code == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has /dev/full")
+def test_a_full_stdout_is_one_line_and_exit_1():
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-c", "from zebro_lab.main import main; main()", "--version"],
+            stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+        )  # fmt: skip
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert "No space left on device" in line
 
 
 def test_a_stop_that_an_import_turned_into_its_own_error_is_a_stop():

@@ -87,8 +87,8 @@ def _claim_terminal(port: serial.Serial) -> None:
     import fcntl
     import termios
 
-    path = os.path.realpath(str(port.port))
-    if not path.startswith("/dev/") or path.startswith(_PSEUDO_TERMINALS):
+    name = str(port.port)
+    if not name.startswith("/") or os.path.realpath(name).startswith(_PSEUDO_TERMINALS):
         return
     in_use = bytearray(4)
     with suppress(OSError):  # the number is another on some processors

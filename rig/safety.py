@@ -133,19 +133,20 @@ class SilenceGuard:
         self._limit = limit
         self._last_arrival = now
 
-    def check(self, samples: Sequence[object], *, now: float) -> None:
+    def check(self, samples: Sequence[object], *, now: float, late: float = 0.0) -> None:
         """Check the time since samples last arrived; a read with samples always passes.
 
         Args:
             samples: Samples of the latest read, possibly none.
             now: Host time [s].
+            late: Part of that time in which this program was late to read, which is no silence [s].
 
         Raises:
             RigTimeout: The read is empty, and no sample has arrived for longer than the limit.
         """
         if samples:
             self._last_arrival = now
-        elif now - self._last_arrival > self._limit:
+        elif now - self._last_arrival - late > self._limit:
             raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._last_arrival,
                              advice=f"limit {self._limit:g} s: check power and cable")  # fmt: skip
 

@@ -35,6 +35,8 @@ SINGLE_PRECISION: Final = 2.0**-22
 """Relative resolution of values sent in single precision [-]."""
 RESTART_WINDOW: Final = 10.0
 """Time within which a device may restart its record numbers once [s]."""
+ON_TIME: Final = 0.1
+"""Longest time between two checks after which this program does not count as late [s]."""
 BAD_FRACTION_WINDOW: Final = 0.25
 """Time over which the fraction of missing and rejected records is computed [s]."""
 MAX_BAD_FRACTION: Final = 0.5
@@ -60,7 +62,7 @@ class AgeGuard:
 
         Args:
             taken: Host time at which each reading was taken, shape (n,) [s].
-            now: Host time [s].
+            now: Host time, less the time by which this program was late to read [s].
 
         Raises:
             StaleReading: A reading is older than the limit.
@@ -164,10 +166,9 @@ class RecordGuard:
     """Check for a stream whose record numbers restart repeatedly, or of which most records fail.
 
     Random record numbers count as restarts. Of a sensor one restart within `RESTART_WINDOW` is
-    tolerated. Of what turns the discs none is, nor a link that was lost and came back: it has
-    forgotten its set-points, and would step to the next ones. A fraction of missing and rejected
-    records of up to `MAX_BAD_FRACTION` is tolerated. That fraction is checked after each
-    `BAD_FRACTION_WINDOW`, if that had at least `MIN_RECORDS` records.
+    tolerated; of what turns the discs none is, nor a link that was lost and came back, for it would
+    step to the next set-points. So is a fraction of missing and rejected records of up to
+    `MAX_BAD_FRACTION` of each `BAD_FRACTION_WINDOW` that had at least `MIN_RECORDS` records.
 
     Args:
         name: Name of the stream, for the message.
@@ -182,17 +183,18 @@ class RecordGuard:
         self._base: Counters | None = None
         self._since = 0.0
 
-    def check(self, counters: Counters, *, now: float) -> None:
+    def check(self, counters: Counters, *, now: float, late: float = 0.0) -> None:
         """Check the stream's counters; losses are checked only among `MIN_RECORDS` or more records.
 
         Args:
             counters: Counters of the stream so far.
             now: Host time [s].
+            late: Time by which this program was late to read, so that buffers may have overflowed:
+                losses pass unless it is 0 [s].
 
         Raises:
-            UnreliableRecords: The record numbers restarted twice within `RESTART_WINDOW`, or more
-                than `MAX_BAD_FRACTION` of one `BAD_FRACTION_WINDOW` is missing or rejected; or
-                what turns the discs restarted or reconnected.
+            UnreliableRecords: There are more restarts, or more missing and rejected records, than
+                the class tolerates.
         """
         restarted = counters.restarted + self._turns_discs * counters.reconnected
         if self._base is None:
@@ -207,7 +209,9 @@ class RecordGuard:
                 f"times within {RESTART_WINDOW:g} s; allowed: {1 - self._turns_discs}; check its "
                 "power and cable"
             )
-        if now - self._since >= BAD_FRACTION_WINDOW:
+        if late:
+            self._base, self._since = counters, now
+        elif now - self._since >= BAD_FRACTION_WINDOW:
             self._require_most(counters, self._base)
             self._base, self._since = counters, now
 
@@ -242,6 +246,10 @@ QUANTITIES: Final = {
 class RigGuards:
     """All guards of a rig.
 
+    Where the program itself was late, silence, age and losses are judged by what a device could
+    have delivered: time beyond `ON_TIME` between two checks, less the time since, is taken off
+    silences and ages. The drives' own watchdogs limit how late it can be.
+
     Args:
         bench: The rig, entered; `Bench.watch` is called for the limited quantities.
         limits: Limits of the plan; where the rig's profile has a smaller one, that holds.
@@ -272,9 +280,11 @@ class RigGuards:
             for disc in DISCS
         }
         self._silence: dict[str, SilenceGuard] = {}
+        self._checked_at = self._late = 0.0
 
     def expect_samples(self, *, now: float) -> None:
-        """Start to check for silence, and records, at host time `now` [s], of energised discs."""
+        """Start to check silence and records at host time `now` [s]; before, they are not."""
+        self._checked_at = now
         for stream in self._bench.streams:
             turns_discs = stream is self._bench.motors
             self._records[stream.name] = RecordGuard(stream.name, turns_discs=turns_discs)
@@ -288,8 +298,6 @@ class RigGuards:
         self, batch: Batch, *, wanted: tuple[float, float], standing: bool, now: float
     ) -> None:
         """Check samples (value, age, silence, losses, freezing), discs' speed errors, and status.
-
-        Silence and records are checked from `expect_samples` on.
 
         Args:
             batch: Samples of one poll.
@@ -307,14 +315,21 @@ class RigGuards:
             self._magnitudes[key].check_all(values)
         if batch.fault:
             raise DeviceFault(batch.fault, status=1)
+        waited = now - self._checked_at if self._silence else 0.0
+        self._late = late = max(waited - ON_TIME, self._late - waited, 0.0)
+        self._checked_at = now
         for name, guard in self._silence.items():
-            guard.check(batch.arrived.get(name, []), now=now)
-        self._bench.require_healthy()
+            guard.check(batch.arrived.get(name, []), now=now, late=late)
+        try:
+            self._bench.require_healthy()
+        except DeviceFault as fault:
+            why = f"; this program was late by {late:.2g} s" if late else ""
+            raise DeviceFault(f"{fault}{why}", status=fault.status) from fault
         for name, taken in batch.taken.items():
-            self._age[name].check(taken, now=now)
+            self._age[name].check(taken, now=now - late)
         for stream in self._bench.streams:
             if stream.name in self._records:
-                self._records[stream.name].check(stream.counters, now=now)
+                self._records[stream.name].check(stream.counters, now=now, late=late)
         self._check_motion(batch, wanted, standing, now)
 
     def _check_motion(

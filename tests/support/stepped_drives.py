@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Drives and load cell with their twins on a clock turned by hand: no thread, port or waiting."""
 
+import math
 from collections import deque
 
 import can
@@ -12,6 +13,9 @@ from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
+
+STEP = 0.01
+"""Longest time between two polls of the drives [s]."""
 
 
 class SteppedBus(can.BusABC):
@@ -66,6 +70,16 @@ def stepped_drives(rig, profile, clock, *, watchdog):
     host, far = SteppedBus(clock), SteppedBus()
     host.peer, far.peer = far, host
     host.twin = SimulatedDrives(rig, far, profile=profile.drives, watchdog=watchdog)
+    sleep = clock.sleep
+
+    def stepping(duration):
+        """Let the drives live on while the program sleeps."""
+        steps = max(math.ceil(duration / STEP), 1)
+        for _ in range(steps):
+            sleep(duration / steps)
+            host.twin.poll(clock.now())
+
+    clock.sleep = stepping
     link = CanLink(host, source=host.twin.source, clock=clock)
     drives = DriveBus(link, profile=profile.drives, limits=profile.limits, clock=clock)
     link = SteppedCell(rig, profile=profile.load_cell, clock=clock)

@@ -3,6 +3,7 @@
 
 import copy
 import tomllib
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -153,3 +154,40 @@ def twin(seed=0, *, kind="board", watchdog=0.2) -> Twin:
 def _lab():
     """Return what makes twins and plans."""
     return {"twin": twin, "plan": plan, "At": At}
+
+
+class LaggingLink(MemoryLink):
+    """Hands on what the twin sends ever later, as a link does whose buffers fill.
+
+    Args:
+        growth: How much later a byte comes for each second that passes [-].
+    """
+
+    growth = 0.0
+
+    def read(self, timeout):
+        self.waiting = getattr(self, "waiting", deque())
+        self.behind = getattr(self, "behind", 0.0)
+        now = self._clock.now()
+        self.behind += self.growth * (now - getattr(self, "read_at", now))
+        self.read_at = now
+        if data := super().read(timeout):
+            self.waiting.append((now + self.behind, data))
+        out = b""
+        while self.waiting and self.waiting[0][0] <= now:
+            out += self.waiting.popleft()[1]
+        return out
+
+
+@pytest.fixture(name="lagging")
+def _lagging():
+    """Return what puts a lagging link to a board's twin; it gives link and acquisition."""
+
+    def put(twin, wanted):
+        twin.clock = ManualClock()
+        link = LaggingLink(twin.board, clock=twin.clock)
+        board = RigBoard(link, profile=PROFILE.board, limits=PROFILE.limits, clock=twin.clock)
+        twin.bench = make_bench(RigDevices(PROFILE, board=board))
+        return link, twin.acquisition(wanted)
+
+    return put

@@ -1,22 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Frozen sensors, unreliable records and readings that wait in buffers stop the discs."""
 
-from collections import deque
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rig.backends import RigDevices
-from rig.clock import ManualClock
 from rig.device import Counters
 from rig.errors import FrozenReading, RigError, StaleReading, UnreliableRecords
-from rig.experiment.bench import make_bench
 from rig.experiment.guards import AgeGuard, FrozenGuard, RecordGuard
-from rig.links.byte_link import MemoryLink
 from rig.links.packet import Kind, Packet, encode_packet
-from rig.slip_rig.board import RigBoard
 
 
 def spoil_records(twin, monkeypatch, spoil, *, after=0):
@@ -79,44 +72,16 @@ def test_records_that_cannot_be_believed_stop_the_discs(lab, monkeypatch, spoil,
     assert twin.at_rest()
 
 
-class LaggingLink(MemoryLink):
-    """Hands on what the twin sends ever later, as a link does whose buffers fill.
-
-    Args:
-        growth: How much later a byte comes for each second that passes [-].
-    """
-
-    growth = 0.0
-
-    def read(self, timeout):
-        self.waiting = getattr(self, "waiting", deque())
-        self.behind = getattr(self, "behind", 0.0)
-        now = self._clock.now()
-        self.behind += self.growth * (now - getattr(self, "read_at", now))
-        self.read_at = now
-        if data := super().read(timeout):
-            self.waiting.append((now + self.behind, data))
-        out = b""
-        while self.waiting and self.waiting[0][0] <= now:
-            out += self.waiting.popleft()[1]
-        return out
-
-
-def test_readings_that_come_ever_later_stop_the_discs(lab):
+def test_readings_that_come_ever_later_stop_the_discs(lab, lagging):
     twin = lab["twin"]()
-    profile = twin.bench.profile
-    clock = ManualClock()
-    link = LaggingLink(twin.board, clock=clock)
-    board = RigBoard(link, profile=profile.board, limits=profile.limits, clock=clock)
-    twin.clock, twin.bench = clock, make_bench(RigDevices(profile, board=board))
-    acquire = twin.acquisition(lab["plan"]())
+    link, acquire = lagging(twin, lab["plan"]())
     with twin.bench:
         twin.turn(acquire)
         link.growth = 0.5
-        began = clock.now()
+        began = twin.clock.now()
         with pytest.raises(RigError, match=r"age of .*'board' is .* s; its limit is 0\.25 s"):
             acquire.until(lambda _: False, 5.0)
-        assert clock.now() - began < 1.0
+        assert twin.clock.now() - began < 1.0
     assert twin.at_rest()
 
 

@@ -281,6 +281,7 @@ class GuardedAcquisition:
 
         Raises:
             RigTimeout: One was not seen to stop its drive within `WATCHDOG_LIMIT`.
+            StopRequested: An emergency stop was requested meanwhile.
         """
         motors, began = self._bench.motors, self._clock.now()
         motors.feeding = False
@@ -288,6 +289,8 @@ class GuardedAcquisition:
             while running := motors.unexpired():
                 self._clock.sleep(self._period)
                 self._bench.read()
+                if self._control.stop.latched:
+                    self._raise_if_stopped()
                 if (waited := self._clock.now() - began) > WATCHDOG_LIMIT:
                     raise RigTimeout(
                         f"the watchdog of the {running}, to which nothing was sent, did not stop "

@@ -11,6 +11,7 @@ from rig.experiment.acquire import WATCHDOG_LIMIT
 from rig.experiment.load import HandShaft
 from rig.experiment.plan import WATCHDOG_PROOF
 from rig.experiment.sink import ExperimentWatcher
+from rig.safety import StopCategory
 
 
 def keep_turning(twin, monkeypatch, slowest):
@@ -136,6 +137,23 @@ def test_a_drive_that_falls_out_for_another_reason_has_proved_nothing(lab, kind,
     monkeypatch.setattr(twin.clock, "sleep", trip)
     with twin.bench, pytest.raises(RigTimeout, match=r"(status|error) 0x(2|40)"):
         acquire.arm()
+
+
+@KINDS
+def test_an_emergency_stop_does_not_wait_for_the_proof(lab, kind, monkeypatch):
+    twin, asked = lab["twin"](kind=kind, watchdog=math.inf), []
+    sleep = twin.clock.sleep
+
+    def push(duration):
+        sleep(duration)
+        if not twin.bench.motors.feeding and not asked:
+            asked.append(twin.clock.now())
+            twin.control.stop.request(StopCategory.EMERGENCY, "planted")
+
+    monkeypatch.setattr(twin.clock, "sleep", push)
+    assert twin.run().reason == "emergency stop: planted"
+    assert twin.clock.now() - asked[0] < 0.05
+    assert twin.sink.latched
 
 
 @KINDS

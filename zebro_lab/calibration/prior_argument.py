@@ -61,7 +61,8 @@ class StatedPrior:
 
         Raises:
             SettingsError: The unit does not fit; the mean, median or an end lies outside the
-                parameter's bounds; or the prior is lognormal and the lower bound is negative.
+                parameter's bounds; or the prior is lognormal and the lower bound is negative or the
+                median.
         """
         try:
             factor = factor_to_si(self.unit, parameter.unit) if self.unit else 1.0
@@ -71,7 +72,7 @@ class StatedPrior:
         low, high = parameter.lower, parameter.upper
         ends = (first, second) if self.family == "uniform" else (first,)
         inside = all(low <= end <= high for end in ends)
-        if not inside or (self.family == "lognormal" and low < 0):
+        if not inside or (self.family == "lognormal" and not 0 <= low < first):
             raise SettingsError(
                 f"'{self.text}' lies outside the bounds of {parameter.name}, {low:g} to {high:g} "
                 f"{parameter.unit}",

@@ -119,7 +119,8 @@ def gather_priors(
     )
     priors = StatedPriors(single.single, posterior)
     said = (
-        f"prior: the posterior of {posterior.origin}, with the correlations of {', '.join(carried)}"
+        f"prior: the posterior of {posterior.origin}, whose law '{earlier.curve.law.name}' is "
+        f"fitted, with the correlations of {', '.join(carried)}"
     )
     notes = (*earlier.notes, said)
     return KnownPriors(priors, texts, earlier, earlier.block_length, notes), laws

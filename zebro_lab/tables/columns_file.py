@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from zebro_lab.files.errors import UnitError
+from zebro_lab.files.errors import NotFound, UnitError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.files.units import factor_to_si
 from zebro_lab.tables.columns import RIG, TRACK, Columns, MappedColumn, scaled
@@ -136,9 +136,11 @@ def read_mapped_columns(
         that it states, if any.
 
     Raises:
-        NotFound: The named `columns.toml` does not exist.
+        NotFound: The table or the named `columns.toml` does not exist.
         SettingsError: It cannot be read, or a key, a unit or a sign is invalid.
     """
+    if not table.exists():  # else a columns.toml would be judged that may be for other tables
+        raise NotFound(f"{table}: no such file")
     entries = read_section(kind, named, alone=alone) if named else read_nearest(kind, table.parent)
     if entries is None:
         return Columns(units, where=f"{kind}."), None

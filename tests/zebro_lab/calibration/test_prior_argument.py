@@ -51,6 +51,8 @@ def test_a_text_is_the_prior_that_it_says_in_si(text, name, prior):
         (["frction = 0.4 ± 0.1"], "did you mean 'friction'"),
         (["friction = -0.4 ± 0.1"], "outside the bounds of friction, 0 to inf"),
         (["shape ~ uniform(0.9, 1.4)"], "outside the bounds of shape, 1 to 2"),
+        (["friction ~ lognormal(0, 0.1)"], "outside the bounds of friction, 0 to inf"),
+        (["shape ~ lognormal(1, 0.1)"], "outside the bounds of shape, 1 to 2"),
         (["friction = 0.4 ± 0.1 N"], "cannot be converted"),
         (["friction = 0.4 ± 0.1", "mu = 0.5 ± 0.1"], "friction is stated twice"),
     ],

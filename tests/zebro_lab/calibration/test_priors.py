@@ -68,6 +68,7 @@ def test_an_earlier_calibration_brings_its_law_and_block_length(tmp_path, earlie
     fitted = short_calibration()
     assert list(laws.values()) == [fitted.posterior.law]
     assert stated.block_length == fitted.fit.block_choice.length
+    assert any("'magic-formula'" in note for note in stated.notes)
     carried = stated.priors.earlier.draws
     assert set(carried) == {p.name for p in fitted.posterior.free}
     assert {path.name for path in stated.files} == {"slip.toml", "posterior.nc"}

@@ -95,6 +95,12 @@ def test_named_columns_file_must_exist(read, tmp_path):
         read(leg_table(), columns=tmp_path / "none.toml")
 
 
+def test_a_missing_log_is_named_and_not_the_columns_file_of_other_tables_beside_it(tmp_path):
+    (tmp_path / "columns.toml").write_text("[constants]\nradius_leg = 0.035\n")
+    with pytest.raises(NotFound, match=r"none\.csv: no such file"):
+        read_leg_log(tmp_path / "none.csv")
+
+
 def test_empty_folder_is_no_leg_log(tmp_path):
     with pytest.raises(DataError, match=r"is a folder without path\.csv, run\.json or metadata"):
         read_leg_log(tmp_path)

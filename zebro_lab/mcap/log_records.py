@@ -84,5 +84,5 @@ def read_log_messages(
         raise DataError("is not an MCAP file", file=path)
     if not (faults := records.faults):
         return messages, None
-    left_out = f"{counted(len(faults), 'fault')}, {counted(records.skipped, 'byte')} left out"
-    return messages, f"{faults[0]}; {left_out}"
+    count = f"{counted(len(faults), 'fault')}, {counted(records.skipped, 'byte')} left out"
+    return messages, f"{faults[0]}; {count}"

@@ -64,8 +64,8 @@ class SoundRecords:
         while at < self._size:
             part = self._part_at(at)
             if part is None:
-                self.faults.append(f"{self._why} at byte {at}")
-                at = self._next_chunk(sound)
+                why, at = self._why, self._next_chunk(sound)
+                self.faults.append(f"bytes {sound} to {at} are left out: {why}")
                 self.skipped += at - sound
                 continue
             records, end, is_chunk = part
@@ -95,7 +95,7 @@ class SoundRecords:
 
     def _part_at(self, at: int) -> _Part | None:
         """Return the chunk or record at a place; None if it is damaged, and why in `_why`."""
-        self._why = "bytes are damaged"
+        self._why = "they are no records"
         head = self._read(at, _LONGEST).ljust(_HEAD, b"\0")
         opcode, end = head[0], at + _HEAD + int.from_bytes(head[1:_HEAD], "little")
         if end > self._size:
@@ -115,7 +115,7 @@ class SoundRecords:
             is_chunk = isinstance(record, Chunk)
             records = breakup_chunk(record, validate_crc=True) if is_chunk else [record]
         except Exception as error:  # libraries answer damage with whatever went wrong inside them
-            self._why = f"a chunk is damaged ({str(error) or type(error).__name__})"
+            self._why = str(error) or type(error).__name__
             return None
         return records, end, is_chunk
 

@@ -138,7 +138,7 @@ def test_a_recording_is_told_as_its_folder_tells_it(run_command, tmp_path):
 
 
 def test_an_experiment_lists_its_runs_and_their_results(run_command, tmp_path):
-    given = ("rig", "run", short_plan(tmp_path), "--rig", "sim", "--fast", "--seed", "1", "--data")
+    given = ("rig", "run", short_plan(tmp_path), "--rig", "sim", "--fast", "--seed", "2", "--data")
     ended = run_command(*given, tmp_path / "data", "--json")
     keys = {"folder", "source", "reason", "finished", "refused", "attempts", "latched", "runs"}
     found = document(ended, "rig run", keys)

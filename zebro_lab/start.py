@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Entry points of the commands: they can be stopped from here on, and check the packages first."""
+"""Entry points of the commands: they can be stopped from here on, and check the packages first.
 
+In an ASCII locale Python starts again in its UTF-8 mode, for no other text of an option or a file's
+name could be read there.
+"""
+
+import io
+import os
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -36,25 +42,27 @@ def require_own_packages() -> None:
 
 def zebro_lab() -> None:
     """Check the packages, then run the command line `zebro-lab`; exit 1 if the check fails."""
-    with stoppable():
-        _check_or_exit()
-        from zebro_lab.main import main
-
-        main()
+    _start("main")
 
 
 def calibrate_slip() -> None:
     """Check the packages, then run the command line `calibrate-slip`; exit 1 if the check fails."""
+    _start("calibrate_slip")
+
+
+def _start(command: str) -> None:
+    """Run a function of `zebro_lab.main`, in any locale, or exit with an error message."""
+    if sys.getfilesystemencoding() == "ascii":
+        command_line = [sys.executable, "-X", "utf8", *sys.orig_argv[1:]]
+        os.execv(sys.executable, command_line)  # noqa: S606 - the same program, the same arguments
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # what the locale cannot write
     with stoppable():
-        _check_or_exit()
-        from zebro_lab.main import calibrate_slip
+        try:
+            require_own_packages()
+        except ImportError as error:
+            sys.exit(f"error: {error}")
+        from zebro_lab import main
 
-        calibrate_slip()
-
-
-def _check_or_exit() -> None:
-    """Exit with an error message unless the packages are zebro-lab's own."""
-    try:
-        require_own_packages()
-    except ImportError as error:
-        sys.exit(f"error: {error}")
+        getattr(main, command)()

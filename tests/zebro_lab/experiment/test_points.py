@@ -54,7 +54,6 @@ def killed_recording(data: Path) -> Path:
     folder = data / "20200101T000000Z_slip-rig_by hand"
     folder.mkdir(parents=True)
     (folder / LOG_FILE).write_bytes(b"")
-    os.utime(folder / LOG_FILE, (0, 0))
     start = datetime(2020, 1, 1, tzinfo=UTC).isoformat()
     manifest = RunManifest(kind="slip-rig", label="by hand", source="sim:x", start=start)
     write_manifest(folder, replace(manifest, exit_status=RECORDING))

@@ -2,18 +2,18 @@
 """Take and check the zero of the load cell, settle the discs at a point, and record its samples."""
 
 from collections.abc import Callable
-from typing import Final
+from typing import Final, TypeAlias
 
 from rig.clock import Clock
-from rig.errors import LimitExceeded
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.plan import Controls, Plan
 from rig.experiment.readings import Batch, Readings, join
 from rig.experiment.sink import RunSink
 from rig.experiment.steps import Point
 from rig.experiment.verdict import LEAST_COVERED, is_steady, span
-from rig.slip_rig.decode import Forces, Zero, require_zero, tare
+from rig.slip_rig.decode import Forces, Zero, tare, zero_change
 
+Ask: TypeAlias = Callable[[str], bool]
 ZERO_ATTEMPTS: Final = 3
 """Largest number of recordings for a zero whose samples cover too little of the duration."""
 STATUS_DELAY: Final = 0.12
@@ -43,12 +43,7 @@ def take_zero(acquire: GuardedAcquisition, duration: float) -> Zero:
 
 
 def undoubted_zero(
-    acquire: GuardedAcquisition,
-    controls: Controls,
-    sink: RunSink,
-    *,
-    known: Zero | None,
-    ask: Callable[[str], bool],
+    acquire: GuardedAcquisition, controls: Controls, sink: RunSink, known: Zero | None, *, ask: Ask
 ) -> Zero:
     """Take the zero of the load cell until it agrees with a known one, or a person confirms it.
 
@@ -69,18 +64,11 @@ def undoubted_zero(
     doubt, confirmed = "with nothing stored as its zero", None
     while True:
         zero = take_zero(acquire, controls.tare_duration)
-        sink.event(
-            "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "
-            f"standard error {zero.standard_error:.4f} N"
-        )  # fmt: skip
-        for before in (known, confirmed):
-            if before is not None:
-                try:
-                    require_zero(before, zero, limit=controls.zero_drift)
-                except LimitExceeded as drift:
-                    doubt = str(drift)
-                else:
-                    return zero
+        forces = f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N"
+        sink.event("zero", f"{forces}, standard error {zero.standard_error:.4f} N")
+        for before in filter(None, (confirmed, known)):
+            if not (doubt := zero_change(before, zero, limit=controls.zero_drift)):
+                return zero
         if known is not None:
             sink.event("warning", doubt)
         reads = f"the load cell reads {zero.normal:.2f} N (traction {zero.traction:.2f} N), {doubt}"

@@ -235,7 +235,7 @@ class _Run:
         self._announce("zero of the load cell")
         by_hand = self._set_load(0.0)
         self._zero = undoubted_zero(
-            self._acquire, self._plan.controls, self._sink, known=self._zero,
+            self._acquire, self._plan.controls, self._sink, self._zero,
             ask=lambda question: by_hand and self._set_load(0.0, question),
         )  # fmt: skip
 

@@ -70,14 +70,11 @@ def contradiction(point: Point, verdict: PointVerdict, others: Mapping[Point, Po
         pair = sorted(((point, verdict), (other, judged)), key=lambda item: item[0].load)
         (light, small), (heavy, large) = pair
         alike = abs(small.slip - large.slip) <= SAME_SLIP and abs(small.slip) >= LEAST_SLIP
-        comparable = alike and judged.accepted and light.load < heavy.load
         least, most = (ratio * abs(large.friction) for ratio in FRICTION_RATIOS)
-        if comparable and not least <= abs(small.friction) <= most:
-            return (
-                f"friction is {small.friction:.3f} in {light.label}, and {large.friction:.3f} in "
-                f"{heavy.label}: loads alone seldom make such a difference; check the zero of the "
-                "load cell"
-            )
+        contradict = light.load < heavy.load and not least <= abs(small.friction) <= most
+        if judged.accepted and alike and contradict:
+            found = f"{small.friction:.3f} in {light.label}, {large.friction:.3f} in {heavy.label}"
+            return f"friction is {found}: loads seldom differ so; check the zero of the load cell"
     return ""
 
 

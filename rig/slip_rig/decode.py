@@ -11,7 +11,7 @@ import numpy as np
 from model.arrays import Array
 from model.slip.definition import SlipDefinition, slip_ratio
 from rig.device import Sample
-from rig.errors import LimitExceeded, ProtocolError
+from rig.errors import ProtocolError
 from rig.sample_columns import as_columns
 from rig.slip_rig.profile import (
     BoardProfile,
@@ -250,20 +250,17 @@ def tare(forces: Forces) -> Zero:
     )
 
 
-def require_zero(before: Zero, after: Zero, *, limit: float) -> None:
-    """Check that a zero did not move during a run.
+def zero_change(before: Zero, after: Zero, *, limit: float) -> str:
+    """Say by how much a zero has moved, of the channel that moved more; empty within the limit.
 
     Args:
-        before: Zero before the run.
-        after: Zero after the run.
+        before: Earlier zero.
+        after: Later zero.
         limit: Largest change allowed, to which twice the standard error of the change is added [N].
-
-    Raises:
-        LimitExceeded: The zero of a channel changed by more: the run is not to be trusted.
     """
     error = float(np.hypot(before.standard_error, after.standard_error))
-    for channel in ("normal", "traction"):
-        moved = getattr(after, channel) - getattr(before, channel)
-        if abs(moved) > limit + 2 * error:
-            raise LimitExceeded(f"change of the {channel} force's zero", value=moved, limit=limit,
-                                unit="N")  # fmt: skip
+    moved = {name: getattr(after, name) - getattr(before, name) for name in ("normal", "traction")}
+    name = max(moved, key=lambda each: abs(moved[each]))
+    if abs(moved[name]) <= limit + 2 * error:
+        return ""
+    return f"the {name} force's zero has moved by {moved[name]:.3g} N; its limit is {limit:g} N"

@@ -201,7 +201,7 @@ def load_rig_profile(name: str) -> RigProfile:
             invalid or contradicts another.
     """
     table = open_profile(name, device="slip-rig")
-    discs, limits = table.table("discs"), table.table("limits")
+    discs, limits, unloaded = (table.table(key) for key in ("discs", "limits", "unloaded"))
     drives, load_cell, board = (table.table(key) for key in ("drives", "load_cell", "board"))
     if not drives.empty == load_cell.empty != board.empty:  # both or neither, and else the board
         raise table.fault("expected either [drives] and [load_cell], or [board], not both")
@@ -212,7 +212,9 @@ def load_rig_profile(name: str) -> RigProfile:
         drives=None if drives.empty else _drives(drives),
         load_cell=None if load_cell.empty else _load_cell(load_cell),
         board=(made := None if board.empty else _board(board)),
-        unloaded=_unloaded(table.table("unloaded")),
+        unloaded=None
+        if unloaded.empty
+        else Zero(*(unloaded.number(key) for key in ("normal", "traction", "standard_error"))),
         limits=_NO_LIMITS if made and made.link == "table" else _limits(limits),
     )
     table.finish()
@@ -273,14 +275,6 @@ def _load_cell(table: TomlTable) -> LoadCellProfile:
         normal=normal,
         traction=traction,
     )
-
-
-def _unloaded(table: TomlTable) -> Zero | None:
-    """Read forces without load, and twice their standard error; None where the table is absent."""
-    if table.empty:
-        return None
-    normal, traction = table.number("normal"), table.number("traction")
-    return Zero(normal, traction, table.positive("tolerance") / 2)
 
 
 def _axis(table: TomlTable) -> ForceAxis:

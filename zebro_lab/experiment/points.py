@@ -19,6 +19,8 @@ from zebro_lab.runs.exclusion import exclude_run
 from zebro_lab.runs.folder import LOG_FILE, require_recorded
 from zebro_lab.runs.manifest import MANIFEST_FILE, RunManifest, read_manifest
 
+ZEROS: Final = {"zero_normal", "zero_traction"}
+"""Constants of a run that hold the zero of the load cell [N]."""
 UNJUDGED: Final = "the run ended before its point was accepted; --resume measures it again"
 """Reason for which a run is excluded until its end record holds a verdict."""
 
@@ -92,16 +94,11 @@ def finished_points(data: Path, journal: Journal) -> Finished:
             notices.append(f"{run.name}: {why}; this run is excluded")
     notices += [f"{name}: the run folder is missing; its point is measured again if in no other run"
                 for name in sorted(journal.accepted) if not (data / name).exists()]  # fmt: skip
-    return Finished(frozenset(numbers), tuple(notices), _last_zero(manifests, journal.plan))
-
-
-def _last_zero(manifests: list[tuple[Path, RunManifest]], plan: str) -> Zero | None:
-    """Return the zero stored with the latest run of a plan, as if without noise; None without."""
-    for _, manifest in reversed(manifests):
-        stored = manifest.constants
-        if manifest.point.get("plan") == plan and {"zero_normal", "zero_traction"} <= set(stored):
-            return Zero(stored["zero_normal"], stored["zero_traction"], standard_error=0.0)
-    return None
+    zero = None
+    for _, manifest in manifests:  # by name, and so by time
+        if manifest.point.get("plan") == journal.plan and set(manifest.constants) >= ZEROS:
+            zero = Zero(*(manifest.constants[name] for name in sorted(ZEROS)), standard_error=0.0)
+    return Finished(frozenset(numbers), tuple(notices), zero)
 
 
 def holds_points(data: Path) -> bool:

@@ -60,14 +60,6 @@ def is_table_file(path: Path) -> bool:
     return path.name.lower().endswith(TABLE_SUFFIXES) and not path.name.startswith("~$")
 
 
-def has_table_name(path: Path) -> bool:
-    """Return whether a file ends in a suffix of a table, .txt included, as if named to be read.
-
-    The suffix may be in capitals, and .gz may follow.
-    """
-    return bool(_suffix(path))
-
-
 def read_table_file(path: Path, *, sheet: str | None = None, bare: bool = False) -> RawTable:
     """Read a table: CSV and other text, Parquet or Excel; each of them may be gzipped.
 

@@ -31,7 +31,7 @@ def test_a_malformed_profile_is_refused_and_the_place_named(tmp_path, name, old,
 
 def test_a_profile_states_what_the_cell_reads_without_load(tmp_path):
     file = tmp_path / "own.toml"
-    unloaded = "[unloaded]\nnormal = 0.2\ntraction = -0.1\ntolerance = 0.5\n"
+    unloaded = "[unloaded]\nnormal = 0.2\ntraction = -0.1\nstandard_error = 0.25\n"
     text = (resources.files("rig") / "profiles" / f"{DRIVES}.toml").read_text()
     file.write_text(text + unloaded)
     assert load_rig_profile(str(file)).unloaded == Zero(0.2, -0.1, 0.25)

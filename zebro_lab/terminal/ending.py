@@ -62,7 +62,8 @@ def _of_the_system(error: Exception) -> str | None:
 
     None for other errors.
     """
-    if isinstance(error, MemoryError):
+    # The last words are those of the loader of libraries.
+    if isinstance(error, MemoryError) or "failed to map" in f"{error}{error.__context__}":
         return "the memory is full; end other programs, or give less data at once"
     if isinstance(error, RecursionError):
         return "folders, or the content of a file, are nested too deep; expected some 300 levels"

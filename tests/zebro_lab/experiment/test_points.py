@@ -13,7 +13,8 @@ import pytest
 
 from rig.experiment.control import Control
 from rig.safety import StopCategory
-from zebro_lab.experiment.journal import JOURNAL_FILE
+from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
+from zebro_lab.experiment.points import finished_points
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.runs.folder import LOG_FILE, find_runs
 from zebro_lab.runs.manifest import (
@@ -78,6 +79,13 @@ def test_points_without_their_journal_are_not_measured_over(lab, plan, tmp_path,
     with pytest.raises(AlreadyExists, match=f"points of an experiment.*{JOURNAL_FILE}"):
         lab.run(plan, data, resume=resume)
     assert manifests(data) == before
+
+
+def test_the_zero_of_the_latest_run_is_known_to_the_next(lab, plan, tmp_path):
+    lab.run(plan, tmp_path)
+    zero = finished_points(tmp_path, read_journal(tmp_path)).zero
+    stored = read_manifest(find_runs(tmp_path)[-1]).constants
+    assert (zero.normal, zero.traction) == (stored["zero_normal"], stored["zero_traction"])
 
 
 @pytest.mark.parametrize("damage", ["gone", "empty", "fifo"])

@@ -74,6 +74,7 @@ def test_what_the_file_system_says_of_a_file_is_one_line_and_exit_1(error, said,
     ("error", "said"),
     [
         (MemoryError("Unable to allocate 41.6 MiB"), "memory is full"),
+        (ImportError("libx.so: failed to map segment from shared object"), "memory is full"),
         (RecursionError("maximum recursion depth exceeded"), "nested too deep"),
     ],
 )

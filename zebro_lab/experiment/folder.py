@@ -107,7 +107,7 @@ class ExperimentFolder:
         zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
         manifest = replace(
             self._manifest, label=label, constants={**self._manifest.constants, **zero},
-            excluded={"why": UNJUDGED}, point=self._point(start, accepted=False),
+            excluded={"why": UNJUDGED}, point=point_record(self._plan, start, accepted=False),
         )  # fmt: skip
 
         def open_now() -> None:
@@ -227,12 +227,6 @@ class ExperimentFolder:
         if error is None:
             self._require_working()
 
-    def _point(self, start: RunStart, *, accepted: bool) -> dict[str, Any]:
-        """Return the entry `point` of a run's manifest; see `point_record`."""
-        return point_record(
-            self._plan, number=start.point.number, attempt=start.attempt, accepted=accepted
-        )
-
     def _enter(self, manifest: RunManifest) -> RunRecorder:
         """Open a run folder, with `again N` in its label where the folder's name is in use."""
         again = 1
@@ -269,7 +263,7 @@ class ExperimentFolder:
         accepted = verdict is not None and verdict.accepted and kept
         why = "" if accepted else why_excluded(verdict, reason, recorder.failure)
         # Atomic: the end record holds both the verdict and whether the run counts.
-        recorder.judge(excluded=why, point=self._point(start, accepted=accepted))
+        recorder.judge(excluded=why, point=point_record(self._plan, start, accepted=accepted))
         recorder.end(reason)
         recorder.__exit__(None, None, None)
         if recorder.failure is not None:  # the end record also excludes the run

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from rig.experiment.sink import RunStart
 from rig.experiment.verdict import PointVerdict
 from rig.slip_rig.decode import Zero
 from zebro_lab.experiment.journal import Journal
@@ -40,15 +41,15 @@ class Finished:
     zero: Zero | None
 
 
-def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dict[str, Any]:
-    """Return the `point` entry of an end record, with the arguments as its keys.
+def point_record(plan: str, start: RunStart, *, accepted: bool) -> dict[str, Any]:
+    """Return the `point` entry of an end record: plan, number, attempt, and whether it is accepted.
 
     Args:
         plan: Fingerprint of the plan.
-        number: Number of the point in the plan.
-        attempt: Number of the attempt, from 1.
+        start: Point and attempt.
         accepted: Whether the point passed its quality checks.
     """
+    number, attempt = start.point.number, start.attempt
     return {"plan": plan, "number": number, "attempt": attempt, "accepted": accepted}
 
 

@@ -6,6 +6,7 @@ other files in the folder belong to the user: they are kept when the result is r
 result that would overwrite one raises an error.
 """
 
+import atexit
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -24,6 +25,7 @@ from zebro_lab.files.replacement import previous_of, recover, replace_folder
 _GLOB: Final = "*"
 _claims: Final[dict[Path, Exclusive]] = {}
 """Locks of the result folders that this process is about to write."""
+atexit.register(lambda: [claim.release() for claim in _claims.values()])
 
 
 @dataclass(frozen=True)

@@ -141,6 +141,7 @@ roll = "R"
 def test_each_kind_of_table_has_its_section_and_the_common_source(tmp_path):
     (tmp_path / "columns.toml").write_text(SECTIONS)
     table = tmp_path / "table.csv"
+    table.touch()
     legs, topic = read_mapped_columns("legs", table, None, {"theta1": "rad"})
     assert (legs.mapped["theta1"].name, legs.source, topic) == ("fl", "sim:x", "/joints")
     imu, topic = read_mapped_columns("imu", table, None, {"roll": "rad"})

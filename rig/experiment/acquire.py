@@ -7,7 +7,7 @@ expire: if the command to stop is lost, the drives stop by themselves.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from rig.clock import Clock
@@ -23,6 +23,8 @@ from rig.safety import StopCategory, StopRequested, require_within
 
 PERIOD: Final = 0.004
 """Polling period: waking up for each of 7,000 samples per second is several times slower [s]."""
+LONGEST_STEP: Final = 5
+"""Most polling periods by which a ramp goes on from one poll to the next, however late that is."""
 FAULT_CLEAR_TIME: Final = 0.5
 """Time after arming in which a reported fault may be one from before arming [s]."""
 WATCHDOG_LIMIT: Final = 0.5
@@ -171,6 +173,8 @@ class GuardedAcquisition:
     def poll(self) -> Batch:
         """Wait for the next period, read and check the samples, then command changed set-points.
 
+        A late poll goes on with a ramp where the one before left it, rather than in a step.
+
         Returns:
             The samples that have arrived.
 
@@ -180,6 +184,9 @@ class GuardedAcquisition:
             SinkFailed: Notes or data cannot be stored; the drives stay energised.
         """
         self._clock.sleep(min(max(self._poll_at - self._clock.now(), 0.0), self._period))
+        on_time = max(self._poll_at + (LONGEST_STEP - 1) * self._period, self._ramp.start)
+        late = max(self._clock.now() - on_time, 0.0)
+        self._ramp = replace(self._ramp, start=self._ramp.start + late)
         self._poll_at = self._clock.now() + self._period  # a slow poll delays no other
         try:
             batch = self._bench.read()
@@ -292,11 +299,9 @@ class GuardedAcquisition:
                 if self._control.stop.latched:
                     self._raise_if_stopped()
                 if (waited := self._clock.now() - began) > WATCHDOG_LIMIT:
-                    raise RigTimeout(
-                        f"the watchdog of the {running}, to which nothing was sent, did not stop "
-                        "it", waited=waited, advice=f"expected within {WATCHDOG_LIMIT:g} s, and "
-                        f"nothing has moved: {motors.watchdog_advice}"
-                    )  # fmt: skip
+                    problem = f"the watchdog of the {running}, sent nothing, did not expire"
+                    advice = f"expected within {WATCHDOG_LIMIT:g} s; {motors.watchdog_advice}"
+                    raise RigTimeout(problem, waited=waited, advice=advice)
         finally:
             motors.feeding = True
         self._bench.disarm()

@@ -126,8 +126,7 @@ class SequenceTracker:
         if self._rate is None:
             return not late and ahead >= self._modulus // 2
         if late:
-            oldest = -2 * self._late_window / self._rate
-            return elapsed is not None and not oldest <= elapsed <= 0
+            return elapsed is not None and not -2 * self._late_window <= self._rate * elapsed <= 0
         due = self._due if elapsed is None else self._rate * elapsed
         return ahead > SLACK + 2 * due
 

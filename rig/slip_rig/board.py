@@ -54,8 +54,8 @@ class RigBoard(PacketStream):
     """
 
     watchdog_advice: Final = (
-        "0.1 to 0.25 s after the last speed command the board's firmware is to stop both discs and "
-        f"to report status {WATCHDOG_EXPIRED:#x}"
+        "nothing has moved; make the board's firmware stop both discs 0.1 to 0.25 s after the last "
+        f"speed command, and report status {WATCHDOG_EXPIRED:#x}"
     )
 
     def __init__(
@@ -116,9 +116,8 @@ class RigBoard(PacketStream):
 
     def unexpired(self) -> str:
         """Return the board's status as text; empty where its watchdog has expired since `arm`."""
-        if not self._released:
-            return "board (no sample without status 0x1 since it was armed)"
-        return "" if self._status & WATCHDOG_EXPIRED else f"board (status {self._status:#x})"
+        told = f"status {self._status:#x}" if self._released else "no status but 0x1 since armed"
+        return "" if self._released and self._status & WATCHDOG_EXPIRED else f"board ({told})"
 
     def command_speeds(self) -> bool:
         """Send the latest commanded speeds of both discs; return whether the link took them."""

@@ -63,7 +63,7 @@ class DriveBus(LinkedStream[CanLink]):
     """
 
     watchdog_advice: Final = (
-        "on each drive set axis.config.watchdog_timeout to 0.1 to 0.25 s and "
+        "nothing has moved; on each drive set axis.config.watchdog_timeout to 0.1 to 0.25 s and "
         "axis.config.enable_watchdog to True, and save its configuration"
     )
 

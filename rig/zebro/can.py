@@ -116,9 +116,8 @@ class CanLegs(LeftStill, LinkedStream[CanLink]):
         if not self.profile.possible(tuple(counts)):
             self._refused += 1
             return None
-        ticks = None
-        if self._stamp is not None and self._stamp[0] == number:
-            ticks = self._stamp[1]
+        stamp = self._stamp
+        ticks = stamp[1] if stamp is not None and stamp[0] == number else None
         elapsed = None if ticks is None else self._device_time.since(ticks)
         sequence = self._tracker.accept(number, now, elapsed)
         if sequence is None:

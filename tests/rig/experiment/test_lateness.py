@@ -3,9 +3,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rig.errors import DeviceFault, RigTimeout, StaleReading
+from rig.experiment.acquire import LONGEST_STEP
 from rig.experiment.plan import WATCHDOG_PROOF
 
 KINDS = pytest.mark.parametrize("kind", ["board", "drives"])
@@ -77,3 +79,23 @@ def test_readings_that_come_ever_later_stop_a_program_that_is_often_late(lab, la
         with pytest.raises(StaleReading):
             acquire.until(lambda _: False, 5.0)
         assert twin.clock.now() - began < 2.0
+
+
+@pytest.mark.parametrize("held", [0.02, 0.15, 0.5])
+def test_a_program_that_is_held_up_in_a_ramp_does_not_step_to_where_it_should_be(lab, held):
+    twin, sent = lab["twin"](watchdog=PATIENT), []
+    command = twin.rig.command
+    twin.rig.command = lambda disc, omega: (sent.append((disc, omega)), command(disc, omega))
+    plan = patient_plan(lab, "board")
+    acquire = twin.acquisition(plan)
+    with twin.bench:
+        acquire.arm()
+        for leg in (12.0, 0.0):
+            acquire.start_ramp(leg, 0.2)
+            acquire.until(lambda _: False, 0.1)
+            twin.clock.sleep(held)
+            acquire.until(lambda _: not acquire.ramping, 3.0)
+            assert acquire.wanted[0] == leg
+    omega = np.array([speed for disc, speed in sent if disc == "leg"])
+    assert omega.max() == 12.0
+    assert abs(np.diff(omega)).max() <= 1.01 * plan.limits.acceleration * LONGEST_STEP * 0.01

@@ -83,6 +83,7 @@ class LogWriter:
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
         self._messages: Counter[str] = Counter()
+        self._latest = 0
         # Descriptions stand in the first chunk, at the end, and here, should that chunk be damaged.
         copies = BytesIO()
         self._writers = (Writer(copies, use_chunking=False), self._writer)
@@ -160,7 +161,11 @@ class LogWriter:
             )
 
     def _add(self, topic: str, stamp: int, message: bytes) -> None:
-        """Write a message with the next sequence number of its topic, at a stamp [ns]."""
+        """Write a message with the next sequence number of its topic, at a stamp [ns].
+
+        Times of logging never decrease: without an index, readers need messages in that order.
+        """
         number = self._messages[topic]
         self._messages[topic] += 1
-        self._writer.add_message(self._channels[topic], stamp, message, stamp, number)
+        self._latest = max(self._latest, stamp)
+        self._writer.add_message(self._channels[topic], self._latest, message, stamp, number)

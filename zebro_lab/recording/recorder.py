@@ -281,12 +281,12 @@ class RunRecorder:
 
     def _drain(self, log: LogWriter) -> None:
         """Write all queued samples, events and counters to the log, and flush the log."""
+        while self._notes:  # they are older than the last of the samples
+            self._notes.popleft()(log)
         for name, queue in self._queues.items():
             samples = queue.take()
             if samples:
                 log.write(name, samples)
-        while self._notes:
-            self._notes.popleft()(log)
         log.flush()
 
     def _finish(self, files: RunFiles) -> None:

@@ -3,6 +3,7 @@
 
 import resource
 import tracemalloc
+from collections import Counter
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -12,8 +13,9 @@ from mcap.reader import make_reader
 
 from rig.clock_watch import ClockWatch
 from rig.device import Counters as DeviceCounters
+from rig.device import Sample
 from rig.sample_columns import SampleColumns
-from support.logs import STREAMS, by_topic, log_of
+from support.logs import COUNTS, STREAMS, by_topic, log_of
 from zebro_lab.mcap.log_writer import LogWriter
 
 
@@ -26,7 +28,7 @@ def test_public_tools_alone_read_raw_counts_events_and_counters(stream):
     assert raw.sequence == [0, 1, 2]
     assert raw.counts == [count for sample in given_samples for count in sample.counts]
     ((message, event),) = found["/events"]
-    assert (event.msg, message.log_time) == ("hello", 10**18)
+    assert (event.msg, message.publish_time) == ("hello", 10**18)
     ((_, counters),) = found[f"/{stream}/counters"]
     assert (counters.received, counters.lost, counters.dropped) == (3, 1, 2)
     assert {field.name for field in fields(DeviceCounters)} < set(dir(counters))
@@ -45,6 +47,25 @@ def test_the_log_alone_names_counts_and_units_and_keeps_the_profile(stream):
     assert "[s]" in next(text for name, text in schemas.items() if "Raw" in name)
     (attachment,) = reader.iter_attachments()
     assert (attachment.name, attachment.data) == ("profiles/x.toml", b"schema = 1")
+
+
+def test_a_log_is_read_by_rosbags_too_in_whatever_order_things_are_stamped(tmp_path):
+    highlevel = pytest.importorskip("rosbags.highlevel")
+    typesys = pytest.importorskip("rosbags.typesys")
+    streams = {name: STREAMS[name] for name in ("board", "legs")}
+    with (tmp_path / "log.mcap").open("wb") as file:
+        writer = LogWriter(file, streams=streams, attachments={}, start=0.0, start_ns=10**18)
+        for chunk in range(10):
+            for name, late in (("board", 0.09), ("legs", 0.02)):
+                time = chunk / 10 + late
+                writer.write(name, [Sample(time, time, chunk, COUNTS[name])])
+            writer.event(chunk / 10 - 0.05, "late")
+            writer.flush()
+        writer.finish()
+    types = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
+    with highlevel.AnyReader([tmp_path / "log.mcap"], default_typestore=types) as reader:
+        found = Counter(connection.topic for connection, *_ in reader.messages())
+    assert found == {"/board/raw": 10, "/legs/raw": 10, "/events": 10}
 
 
 class Nowhere:

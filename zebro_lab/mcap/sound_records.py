@@ -77,7 +77,7 @@ class SoundRecords:
             at = end
             if is_chunk:
                 sound, self.is_mcap, chunked = at, True, True
-        if not self.faults and self._read(self._size - len(MAGIC), len(MAGIC)) != MAGIC:
+        if not (self.faults or self._read(max(self._size, 16) - 8, 8) == MAGIC):
             self.faults.append("the file ends early")
 
     def _read(self, at: int, count: int) -> bytes:

@@ -132,6 +132,15 @@ def test_two_holes_are_both_counted(recorded):
     assert "2 faults" in damage
 
 
+def test_every_part_of_a_log_from_its_beginning_is_told_to_end_early(recorded):
+    for kept in (8, 9, 17, *range(40, len(recorded.data), 97), *recorded.ends[:-1]):
+        recorded.copy.write_bytes(recorded.data[:kept])
+        found = read_raw_log(recorded.copy)
+        assert "the file ends early" in found.damage, kept
+        whole = sum(end <= kept for end in recorded.ends) * IN_CHUNK
+        assert len(found.streams.get("/legs/raw", ())) == whole
+
+
 def test_no_run_hangs_on_its_first_chunk(recorded):
     first = recorded.data.index(b"\4\0\0\0zstd")
     data = recorded.data[: first - 37] + bytes(recorded.ends[0] - first + 37)

@@ -57,7 +57,7 @@ class Mutation:
         kind: One of `KINDS`.
         function: The function's name.
         same: The function's syntax tree as text, by which it is found in another checkout.
-        node: Place of the node in the order in which `ast.walk` meets the nodes of the function.
+        node: Index of the node in `body_nodes` of the function.
     """
 
     kind: str
@@ -85,7 +85,7 @@ def _is_number(node: ast.Constant) -> bool:
 def mutated(function: Function, mutation: Mutation) -> Function:
     """Return a copy of a function with one node changed."""
     changed = copy.deepcopy(function)
-    node = list(ast.walk(changed))[mutation.node]
+    node = body_nodes(changed)[mutation.node]
     if isinstance(node, ast.Compare):
         node.ops[0] = COMPARISONS[type(node.ops[0])]()
     elif isinstance(node, ast.BinOp | ast.UnaryOp):
@@ -96,6 +96,12 @@ def mutated(function: Function, mutation: Mutation) -> Function:
         assert isinstance(node.value, int | float)
         node.value = 1.5 * node.value if isinstance(node.value, float) else node.value + 1
     return ast.fix_missing_locations(changed)
+
+
+def body_nodes(function: Function) -> list[ast.AST]:
+    """Return the nodes of a function's body without docstring, alike in all with one tree."""
+    body = function.body[1:] if docstring_lines(function.body[0]) else function.body
+    return [node for each in body for node in ast.walk(each)]
 
 
 def tree_of(function: Function) -> str:
@@ -122,10 +128,9 @@ def functions_by_tree(checkout: Checkout) -> dict[str, tuple[Module, Function]]:
 def sites(function: Function) -> Iterator[Mutation]:
     """Yield every mutation that the body of a function admits."""
     tree = tree_of(function)
-    body = {id(node) for each in function.body for node in ast.walk(each)}
-    for number, node in enumerate(ast.walk(function)):
+    for number, node in enumerate(body_nodes(function)):
         kind = kind_of(node)
-        if kind is not None and id(node) in body:
+        if kind is not None:
             yield Mutation(kind, function.name, tree, number)
 
 

@@ -53,6 +53,16 @@ def test_a_mutation_changes_one_node_of_the_body(text):
     assert ast.unparse(function) == text.strip()
 
 
+def test_the_same_node_is_changed_where_docstring_and_annotations_differ():
+    bare = "def f(a, b):\n    return a - b[0]"
+    other = 'def f(a: "int | None", b: list[int]) -> int:\n    """Subtract."""\n    return a - b[0]'
+    [function], [theirs] = ast.parse(bare).body, ast.parse(other).body
+    for each in sites(function):
+        assert ast.unparse(mutated(theirs, each).body[1]) == ast.unparse(
+            mutated(function, each).body[0]
+        )
+
+
 def write(root, home, tests):
     files = {"model/__init__.py": "", f"model/{home}": CHOICE, f"tests/model/test_{home}": tests}
     for name, text in files.items():

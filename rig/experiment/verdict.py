@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+import numpy.ma  # np.median would import it while the discs turn
 
 from model.arrays import Array
 from rig.experiment.plan import Acceptance, SettleCriterion

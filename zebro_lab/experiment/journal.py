@@ -162,7 +162,7 @@ def read_journal(data: Path) -> Journal:
         elif entry.get("kind") == "damaged" or (
             entry.get("kind") == "end" and str(entry.get("text")).startswith(EMERGENCY)
         ):
-            latched = str(entry["text"])
+            latched = str(entry.get("text"))
     return Journal(
         plan=plan,
         accepted={

@@ -29,6 +29,34 @@ def test_a_run_says_what_each_point_is_worth(short, tmp_path):
     assert "completed: 2 points finished, 0 points failed" in result.output
 
 
+LATE = """
+import sys
+from rig.experiment import acquire, run
+arm, go, known = acquire.GuardedAcquisition.arm, run._Run.go, set()
+
+def armed(self):
+    arm(self)
+    known.update(sys.modules)
+
+def gone(self):
+    outcome = go(self)
+    print("late:", sorted(set(sys.modules) - known))
+    return outcome
+
+acquire.GuardedAcquisition.arm, run._Run.go = armed, gone
+from zebro_lab.main import app
+app(["rig", "run", *sys.argv[1:]])
+"""
+
+
+def test_nothing_is_imported_while_the_discs_turn(short, tmp_path):
+    """An import takes up to half a second, in which no watchdog is fed."""
+    options = ("--rig", "sim", "--fast", "--data", tmp_path / "data")
+    found = subprocess.run([sys.executable, "-c", LATE, short, *options], capture_output=True,
+                           text=True, check=True)  # fmt: skip
+    assert "late: []" in found.stdout
+
+
 def test_refused_points_have_an_exit_code_of_their_own(short, tmp_path):
     short.write_text(short.read_text().replace("slip = 0.02   ", "slip = 1e-9   "))
     result = zebro_lab("run", short, "--rig", "sim", "--fast", "--data", tmp_path / "data")

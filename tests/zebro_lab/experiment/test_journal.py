@@ -49,4 +49,8 @@ def test_an_emergency_stop_stays_until_it_is_reset(tmp_path):
         begin(tmp_path, resume=True)
     assert begin(tmp_path, resume=True, reset=True) == read_journal(tmp_path)
     assert read_journal(tmp_path).latched is None
+    with (tmp_path / JOURNAL_FILE).open("a") as file:
+        file.write('{"kind": "damaged"}\n')  # by hand, without a text
+    assert read_journal(tmp_path).latched is not None
+    begin(tmp_path, resume=True, reset=True)
     begin(tmp_path, resume=True)

@@ -15,6 +15,7 @@ import contextlib
 import errno
 import hashlib
 import os
+import re
 import shlex
 import socket
 import struct
@@ -34,6 +35,8 @@ _LOCK_FILES: Final = Path("/tmp")  # noqa: S108 - one place for all programs, wh
 """Folder of the lock files of devices where there are no abstract sockets."""
 _PSEUDO_TERMINALS = "/dev/pts"
 """Folder of the devices of pseudo-terminals."""
+_HOST: Final = re.compile(r"(?<=^udp:)[A-Za-z][^:/?]*|(?<=^socket://)[A-Za-z][^:/?]*")
+"""Name of the host of a device on the network; an address does not match."""
 _MOST_ASKING: Final = 4096
 """Number of programs that may ask for the owner of a lock, which answers none of them."""
 
@@ -149,9 +152,10 @@ def device_lock(name: str) -> Exclusive:
 
     Args:
         name: A path, followed through links so that all its names are one device, or a name that
-            begins with its kind, such as `socketcan:can0` or `udp:192.168.1.1:49152`.
+            begins with its kind, such as `socketcan:can0` or `udp:192.168.1.1:49152`; the names of
+            a host, as in `socket://localhost:4000`, are one device, too.
     """
-    real = _device_path(name) if name.startswith("/") else name
+    real = _device_path(name) if name.startswith("/") else _HOST.sub(_address, name)
     file = None if _NAMED else _LOCK_FILES / f"zebro-lab-{_hash(real)}.lock"
     return Exclusive(real, what=name, file=file, shared=True)
 
@@ -187,6 +191,13 @@ def _device_path(path: str) -> str:
             break
         place = target
     return str(place.parent.resolve() / place.name)
+
+
+def _address(host: re.Match[str]) -> str:
+    """Return the address of a host that `_HOST` has found; its name where that is unknown."""
+    with contextlib.suppress(OSError, UnicodeError):
+        return socket.gethostbyname(host[0])
+    return host[0]
 
 
 def _hash(name: str) -> str:

@@ -81,8 +81,17 @@ def test_a_bus_in_use_is_refused_with_its_owner(channel):
     require_one_owner(f"CanLink({channel!r})", CanLink(channel))
 
 
-def test_a_load_cell_in_use_is_refused_with_its_owner():
-    require_one_owner("UdpLink('127.0.0.1', 49999)", UdpLink("127.0.0.1", 49999))
+@pytest.mark.parametrize("host", ["127.0.0.1", "localhost"])
+def test_a_load_cell_in_use_is_refused_with_its_owner_by_any_name(host):
+    require_one_owner("UdpLink('127.0.0.1', 49999)", UdpLink(host, 49999))
+
+
+@pytest.mark.parametrize("name", ["socket://localhost:4000", "udp:localhost:4000"])
+def test_the_names_of_a_host_are_one_device_and_an_unknown_host_is_one_too(name):
+    with device_lock(name.replace("localhost", "127.0.0.1")):
+        assert device_lock(name)._name == name.replace("localhost", "127.0.0.1")
+    nowhere = name.replace("localhost", "no.such.host.invalid")
+    assert device_lock(nowhere)._name == nowhere
 
 
 def test_a_serial_port_in_use_is_refused_with_its_owner_under_another_name(tmp_path):

@@ -38,19 +38,32 @@ def delete_stale_loops(package: Path) -> None:
         known.write_text(digest.hexdigest(), encoding="utf-8")
 
 
-delete_stale_loops(Path(__file__).parent)
+def _can_be_stored() -> bool:
+    """Return whether there is a folder in which numba can store compiled functions.
 
-compiled = numba.njit(cache=True, nogil=True, error_model="numpy")
+    There is none where neither the package nor the user's home can be written.
+    """
+    try:
+        numba.njit(cache=True)(_can_be_stored)
+    except RuntimeError:
+        return False
+    return True
+
+
+delete_stale_loops(Path(__file__).parent)
+_STORED = _can_be_stored()
+
+compiled = numba.njit(cache=_STORED, nogil=True, error_model="numpy")
 """Decorator for numeric functions: compiled, cached on disk, without the GIL, 1/0 is infinite."""
 # numba compiles its own loops of this kind with `_nrt`; its type stubs lack the option.
-borrowing = numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False)  # pyright: ignore[reportCallIssue]
+borrowing = numba.njit(cache=_STORED, nogil=True, error_model="numpy", _nrt=False)  # pyright: ignore[reportCallIssue]
 """Decorator for hot loops that allocate no arrays: as `compiled`, without reference counting.
 
 With reference counting, every row that is read of an array increments and decrements a count. This
 takes half of a walk's time, and threads that share a table contend for the table's count.
 """
 inlined = numba.njit(  # pyright: ignore[reportCallIssue]
-    cache=True, nogil=True, error_model="numpy", forceinline=True, _nrt=False
+    cache=_STORED, nogil=True, error_model="numpy", forceinline=True, _nrt=False
 )
 """Decorator for small functions of a hot loop: as `borrowing`, and inlined into their callers.
 

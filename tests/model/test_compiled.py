@@ -1,4 +1,7 @@
 # SPDX-License-Identifier: MIT
+import subprocess
+import sys
+
 import pytest
 
 from model.compiled import delete_stale_loops
@@ -41,3 +44,16 @@ def test_a_package_that_cannot_be_written_is_left_as_it_is(package, monkeypatch)
     monkeypatch.setattr("pathlib.Path.unlink", refuse)
     delete_stale_loops(package)
     assert stored(package) == [".nbc", ".nbi"]
+
+
+NOWHERE = """
+from numba.core import caching
+caching.CacheImpl._locator_classes = []  # as where neither package nor home can be written
+from model.compiled import compiled
+print(compiled(lambda x: x + 4)(-2))
+"""
+
+
+def test_loops_are_compiled_where_nothing_can_be_stored():
+    program = [sys.executable, "-c", NOWHERE]
+    assert subprocess.run(program, capture_output=True, text=True, check=True).stdout == "2\n"

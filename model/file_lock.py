@@ -14,15 +14,7 @@ def try_lock(handle: int) -> bool:
     False where another open handle has the lock. Also True, without a lock, where the system
     (Windows) or the file system has none. Closing the file, or the end of the process, releases it.
     """
-    if fcntl is None:
-        return True
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks
-        return True
-    return True
+    return _lock(handle, shared=False) is not False
 
 
 def is_locked(handle: int) -> bool | None:
@@ -33,12 +25,18 @@ def is_locked(handle: int) -> bool | None:
     Args:
         handle: Handle of the file, to be closed after this: it has a shared lock.
     """
+    locked = _lock(handle, shared=True)
+    return None if locked is None else not locked
+
+
+def _lock(handle: int, *, shared: bool) -> bool | None:
+    """Lock an open file without waiting; return whether that succeeded, None without locks."""
     if fcntl is None:
         return None
     try:
-        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except BlockingIOError:
-        return True
+        return False
     except OSError:  # a file system without locks
         return None
-    return False
+    return True

@@ -86,6 +86,7 @@ def repeating(
     ending = threading.Event()
 
     def repeat() -> None:
+        """Do the work, time after time, until the context ends."""
         while not ending.wait(every):
             work()
 

@@ -171,6 +171,7 @@ class ExperimentFolder:
         """
 
         def note() -> None:
+            """Write the event; called in the writing thread."""
             if self._recorder is not None:
                 self._recorder.event(f"{kind}: {text}")
             lost = kind == "end" and text == "completed" and self._failure

@@ -137,6 +137,7 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
         written = [path.name for path in draft.iterdir()]
 
         def owned() -> Collection[str]:
+            """Return the earlier result's files, once no other file has a name of the new one."""
             names = _owned(folder, kind)
             _require_free(folder, written, kind, names)
             return names

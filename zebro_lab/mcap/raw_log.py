@@ -136,6 +136,7 @@ def read_raw_log(path: Path) -> SalvagedStreams:
     parts: dict[str, list[SampleColumns]] = {}
 
     def decoder(schema: Schema) -> Decode | None:
+        """Return what decodes raw samples; None for other messages."""
         known = RAW_SCHEMAS.get(schema.name)
         return None if known is None else partial(decode_raw, dtype=known[0])
 

@@ -105,6 +105,7 @@ def _read_mcap(path: Path, types: Collection[str]) -> tuple[list[LoggedMessage],
     factory = DecoderFactory()
 
     def decoder(schema: Schema) -> Decode | None:
+        """Return what decodes messages of the wanted types; None for others."""
         return factory.decoder_for(MessageEncoding.CDR, schema) if schema.name in types else None
 
     return read_log_messages(path, decoder)

@@ -27,7 +27,7 @@ REFERENCE = Path(os.environ.get("ZEBRO_LAB_SHARED", Path(__file__).parents[2] / 
 
 HAS_REFERENCE = REFERENCE.is_dir() and any(REFERENCE.iterdir())
 
-settings.register_profile("lab", deadline=None, derandomize=True)
+settings.register_profile("lab", deadline=None, derandomize=True, max_examples=50)
 settings.load_profile("lab")
 
 

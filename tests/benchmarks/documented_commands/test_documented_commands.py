@@ -63,7 +63,7 @@ def plain(tmp_path, monkeypatch):
 
 
 def run(place, out, *more):
-    assert main(["run", str(place), str(out), "--limit", "1.5", *map(str, more)]) == 0
+    assert main(["run", str(place), str(out), "--limit", "0.7", *map(str, more)]) == 0
     return out
 
 

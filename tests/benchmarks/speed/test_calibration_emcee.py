@@ -13,6 +13,8 @@ from model.bayes.likelihood import log_likelihood
 from model.slip.thesis_curve import THESIS_LAW
 from rig.slip_rig.sweep import SweepPlan
 
+pytestmark = pytest.mark.long
+
 SMALL = SweepPlan(slips=(0.02, 0.05, 0.1, 0.2, 0.4, 0.8), duration=0.4)
 
 

@@ -71,6 +71,7 @@ def exposures():
     return [exposure_of(planar, rng) for planar in WALK]
 
 
+@pytest.mark.long
 def test_exposures_apart_are_all_found_and_in_order(exposures):
     found = exposures_in(pasted(exposures), reach=0.3)
     poses = np.array([exposure.alignment.pose.planar for exposure in found])

@@ -220,7 +220,7 @@ class Rig:
     [
         ([signal.SIGKILL], None),
         ([signal.SIGTERM], "safe stop: SIGTERM"),
-        ([signal.SIGHUP], "safe stop: SIGHUP"),
+        pytest.param([signal.SIGHUP], "safe stop: SIGHUP", marks=pytest.mark.long),
         ([signal.SIGINT, signal.SIGINT], "safe stop: Ctrl-C"),
         ([signal.SIGINT, signal.SIGINT, signal.SIGINT], "emergency stop: Ctrl-C"),
     ],
@@ -248,8 +248,8 @@ def test_a_signal_leaves_motors_at_rest_valid_runs_and_a_run_to_resume(
         for folder in find_runs(rig.data):
             read_slip_rig_run(folder)  # whole, or salvaged
         assert 1 <= rig.closed() < 3
-        if reason in {"safe stop: SIGHUP", "safe stop: Ctrl-C"}:
-            return  # SIGTERM's safe stop, resumed below, differs in its name alone
+        if reason is not None and reason.startswith("safe stop"):
+            return  # it leaves more than SIGKILL, which is resumed below
         options = ["--resume"] + ["--reset-emergency"] * (len(signals) == 3)
         with rig.operated():
             resumed = run_command(*rig.arguments(plan), *options)

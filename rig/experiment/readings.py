@@ -9,6 +9,7 @@ import numpy as np
 
 from model.arrays import Array
 from rig.device import Sample
+from rig.errors import DeviceFault
 from rig.sample_columns import as_columns
 from rig.slip_rig.decode import Zero
 
@@ -16,6 +17,9 @@ FASTEST_DRIFT: Final = 0.01
 """Largest drift of a device's clock, that of oscillators without a quartz [-]."""
 RESTART_DELAY: Final = 0.1
 """Excess of a sample's delay over the largest possible one that means a device restart [s]."""
+LARGEST_LEAD: Final = 1.0
+"""Time by which a device's clock may run ahead of the host's beyond its drift; also the time over
+which its first offset is the smallest delay [s]."""
 
 
 @dataclass(frozen=True)
@@ -103,13 +107,16 @@ class HostTime:
     """
 
     def __init__(self) -> None:
-        self._offset = self._lag = np.inf
-        self._read_at = self._latest = -np.inf
+        self._offset = self._first = self._began = self._read_at = 0.0
+        self._lag = self._latest = -np.inf  # a first sample begins as one after a restart does
 
     def map(self, samples: Sequence[Sample]) -> Array:
         """Estimate the host times at which new samples were taken, shape (n,) [s].
 
         Where any sample has no device time, the times at which all were read are returned.
+
+        Raises:
+            DeviceFault: The device's clock runs so fast that an old sample would look new.
         """
         columns = as_columns(samples)
         host, device = columns.host_time, columns.device_time
@@ -119,10 +126,23 @@ class HostTime:
         least, elapsed = float(lag.min()), float(host[-1]) - self._read_at
         # A delay cannot grow faster than time passes; if it does, the device has restarted.
         if lag[-1] > self._lag + elapsed + RESTART_DELAY:
-            self._offset = least
+            self._offset, self._began = least, float(host[-1])
         else:
             self._offset = min(self._offset + FASTEST_DRIFT * max(elapsed, 0.0), least)
         self._lag, self._read_at = float(lag[-1]), float(host[-1])
+        self._require_no_lead(self._read_at - self._began)
         times = np.maximum.accumulate(np.maximum(device + self._offset, self._latest))
         self._latest = float(times[-1])
         return times
+
+    def _require_no_lead(self, passed: float) -> None:
+        """Check how far the offset fell in `passed` [s] since the first one or the last restart."""
+        if passed < LARGEST_LEAD:
+            self._first = self._offset
+        elif (lead := self._first - self._offset) > LARGEST_LEAD + FASTEST_DRIFT * passed:
+            raise DeviceFault(
+                f"a device's clock ran ahead of this computer's by {lead:.3g} s in {passed:.3g} s, "
+                f"so that the age of its readings is unknown; expected at most {FASTEST_DRIFT:.0%} "
+                "of the time: set the rate of its clock, in the profile or in the device",
+                status=1,
+            )

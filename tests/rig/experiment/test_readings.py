@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from rig.device import Sample
+from rig.errors import DeviceFault
 from rig.experiment.readings import HostTime
 
 
@@ -40,3 +41,24 @@ def test_a_backlog_is_seen_however_long_it_stays():
     for k in range(10, 110):  # half of real time
         taken = clock.map([Sample(10.0 + k / 50 - 0.1, k / 100, k, ())])
     assert 10.0 + 109 / 50 - 0.1 - taken[0] == pytest.approx(0.99, abs=0.05)
+
+
+@pytest.mark.parametrize("rate", [1.05, 1.5, 10.0])
+def test_a_clock_that_runs_too_fast_is_refused_since_its_readings_have_no_age(rate):
+    clock, seen = HostTime(), []
+
+    def run_for(seconds):
+        for passed in np.arange(0, seconds, 0.01):
+            seen.append(passed)
+            clock.map([Sample(5.0 + passed, passed * rate, len(seen), ())])
+
+    with pytest.raises(DeviceFault, match="clock ran ahead"):
+        run_for(60.0)
+    assert (seen[-1] - 1.0) * (rate - 1.01) == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_first_sample_that_waited_long_is_no_fast_clock():
+    clock = HostTime()
+    clock.map([Sample(8.0, 0.0, 0, ())])
+    taken = [clock.map([Sample(8.0 + 0.01 * k, 3.0 + 0.01 * k, k, ())]) for k in range(1, 500)]
+    np.testing.assert_allclose(np.ravel(taken), 8.0 + 0.01 * np.arange(1, 500))

@@ -76,7 +76,7 @@ class ExperimentFolder:
         clock: Clock = SYSTEM_CLOCK,
         in_step: bool = False,
     ) -> None:
-        self._data = data
+        self._given, self._data = data, data.resolve()  # should a link on the way be turned
         self._plan = plan
         self._manifest = manifest
         self._profiles = profiles
@@ -85,8 +85,8 @@ class ExperimentFolder:
         self._written: Mapping[str, Counters] = {}
         self._clock = clock
         self._in_step = in_step
-        self._journal = JournalWriter(data)
-        self._latch = EmergencyLatch(data)
+        self._journal = JournalWriter(self._data)
+        self._latch = EmergencyLatch(self._data)
         self._jobs: queue.Queue[_Job] = queue.Queue(MOST_WAITING)
         self._ending = threading.Event()
         self._failure: str | None = None
@@ -338,8 +338,8 @@ class ExperimentFolder:
         if now - self._checked_at < DISK_PERIOD:
             return
         self._checked_at = now
-        if not self._data.exists() or identity(self._data.stat()) != self._identity:
-            raise SinkFailed(f"the folder {self._data} was removed or replaced")
+        if not self._given.exists() or identity(self._given.stat()) != self._identity:
+            raise SinkFailed(f"the folder {self._given} was removed or replaced")
         if self._recorder is not None and self._recorder.failure is not None:
             raise SinkFailed(self._recorder.failure)
         require_space(self._data, self._least_room)

@@ -59,7 +59,8 @@ def plan_fingerprint(text: str) -> str:
 class JournalWriter:
     """Writer of `experiment.jsonl`; each event is flushed to the disk (fsync) when appended.
 
-    As a context manager it keeps a reserve file, which is deleted when the disk is full.
+    As a context manager it keeps a reserve file, which is deleted when the disk is full, and
+    writes no more once another program has changed the journal.
 
     Args:
         data: Folder of the experiment; created when missing.
@@ -69,8 +70,10 @@ class JournalWriter:
         data.mkdir(parents=True, exist_ok=True)
         self._file = data / JOURNAL_FILE
         self._reserve = data / RESERVE_FILE
+        self._expected: int | None = None
 
     def __enter__(self) -> "JournalWriter":
+        self._expected = self._size()
         with contextlib.suppress(OSError):  # on a full disk `require_room` stops the run
             self._reserve.unlink(missing_ok=True)  # whatever is there: it is not written through
             with self._reserve.open("xb") as file:
@@ -91,7 +94,14 @@ class JournalWriter:
 
         Raises:
             OSError: The line could not be written or flushed, and the journal is unchanged.
+            RecordingError: Another program has changed the journal.
         """
+        found = self._size()
+        if self._expected not in (None, found):
+            raise RecordingError(
+                f"{self._file} was changed by another program during the experiment: it has "
+                f"{found} bytes and {self._expected} were written; put it back before --resume"
+            )
         entry = {"time": datetime.now(UTC).isoformat(), "kind": kind, "text": text, **more}
         # ASCII escapes: no character of a text can end a line or fail to be encoded.
         line = json.dumps(entry).encode("ascii") + b"\n"
@@ -102,6 +112,12 @@ class JournalWriter:
                 raise
             self._reserve.unlink(missing_ok=True)
             self._write(line)
+        if self._expected is not None:
+            self._expected += len(line)
+
+    def _size(self) -> int:
+        """Return the size of the journal [bytes], 0 without one."""
+        return self._file.stat().st_size if self._file.exists() else 0
 
     def repair(self) -> None:
         """Remove a last line without a newline (a crash), and append its text as an event.

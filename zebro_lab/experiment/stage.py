@@ -129,7 +129,8 @@ def _recording(folder: ExperimentFolder, data: Path, control: Control) -> Iterat
 
     An emergency stop that is latched in `control` at the end is latched on disk, too.
     """
-    with signal_stops(control.stop), supervised(control), folder, _commandable(data, control):
+    commandable = _commandable(data.resolve(), control)
+    with signal_stops(control.stop), supervised(control), folder, commandable:
         try:
             yield
         finally:

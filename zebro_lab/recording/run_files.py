@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import IO, Any, Final
+from typing import Any, Final
 
 from model.file_lock import try_lock
 from zebro_lab.files.errors import RecordingError
@@ -26,8 +26,41 @@ from zebro_lab.runs.manifest import (
 from zebro_lab.runs.profile_streams import stored_streams
 
 
+class HashedFile(io.BufferedWriter):
+    """New output file that computes its SHA-256 while it is written, from beginning to end.
+
+    Args:
+        path: Path of the file, which must not exist.
+
+    Attributes:
+        sha256: Hash of all that was written.
+        flushed: Number of bytes that the system has taken.
+
+    Raises:
+        OSError: The file cannot be created.
+    """
+
+    def __init__(self, path: Path) -> None:
+        # Always at the end: what another program cuts off is missing in the size, not a hole.
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o666)
+        super().__init__(io.FileIO(handle, "w"))
+        self.sha256 = hashlib.sha256()
+        self._written = self.flushed = 0
+
+    def write(self, data: Any) -> int:
+        """Write bytes at the end, and return their number; `OSError` if the disk fails."""
+        self.sha256.update(data)
+        self._written += len(data)
+        return super().write(data)
+
+    def flush(self) -> None:
+        """Hand all bytes to the system; `OSError` if the disk fails."""
+        super().flush()
+        self.flushed = self._written
+
+
 class OpenPlace:
-    """Check of whether an open file is still under its path, by device and inode.
+    """Check of whether an open file is still under its path, by device and inode, and whole.
 
     Args:
         path: Path of the file.
@@ -37,14 +70,16 @@ class OpenPlace:
         OSError: The file or its folder cannot be examined.
     """
 
-    def __init__(self, path: Path, file: IO[bytes]) -> None:
+    def __init__(self, path: Path, file: HashedFile) -> None:
         self._path = path
+        self._open = file
         self._number = file.fileno()
         self._file = identity(os.fstat(self._number))
         self._folder = identity(path.parent.stat())
 
     def problem(self) -> str | None:
-        """Return why the open file is no longer under its path; None where it is."""
+        """Return why the open file is not whole or not under its path; None where it is."""
+        written = self._open.flushed
         try:
             found = self._path.stat()
         except FileNotFoundError:
@@ -53,6 +88,8 @@ class OpenPlace:
             return f"{self._path} can no longer be accessed: {error.strerror}"
         if identity(found) != self._file:
             return f"{self._path} was removed or renamed, and another file has its name now"
+        if found.st_size < written:
+            return f"{self._path} was cut to {found.st_size} of the {written} bytes written"
         return None
 
     def folder(self) -> Path | None:
@@ -128,26 +165,6 @@ def identity(status: os.stat_result) -> tuple[int, int]:
     return status.st_dev, status.st_ino
 
 
-class HashedFile(io.BufferedWriter):
-    """Output file that computes its SHA-256 while it is written, from beginning to end.
-
-    Args:
-        raw: The file, new and open for writing.
-
-    Attributes:
-        sha256: Hash of all that was written.
-    """
-
-    def __init__(self, raw: io.RawIOBase) -> None:
-        super().__init__(raw)
-        self.sha256 = hashlib.sha256()
-
-    def write(self, data: Any) -> int:
-        """Write bytes at the end, and return their number; `OSError` if the disk fails."""
-        self.sha256.update(data)
-        return super().write(data)
-
-
 RESERVE: Final = 1 << 16
 """Disk space reserved in the run folder for log end and end record on a full disk [bytes]."""
 _RESERVE_FILE = ".reserve"
@@ -190,7 +207,7 @@ class RunFiles:
         streams = stored_streams(folder, profiles)
         self.streams = tuple(streams)
         (folder / _RESERVE_FILE).write_bytes(os.urandom(RESERVE))
-        self._file = HashedFile((folder / LOG_FILE).open("xb", buffering=0))
+        self._file = HashedFile(folder / LOG_FILE)
         try:
             try_lock(self._file.fileno())  # until it is closed, the run is being recorded
             self._place = OpenPlace(folder / LOG_FILE, self._file)
@@ -217,10 +234,10 @@ class RunFiles:
         os.fsync(self._file.fileno())
 
     def require_place(self) -> None:
-        """Check that the log is still under its path.
+        """Check that the log is whole and still under its path.
 
         Raises:
-            RecordingError: The log or its folder was removed, renamed or replaced.
+            RecordingError: The log was cut, or it or its folder removed, renamed or replaced.
         """
         problem = self._place.problem()
         if problem is not None:

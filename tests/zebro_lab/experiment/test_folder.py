@@ -234,6 +234,35 @@ def test_whatever_fails_stops_the_experiment_and_is_its_end(
     assert lab.run(plan, data, resume=True).finished == 6
 
 
+def turn_the_link(data):
+    data.unlink()
+    (data.parent / "foreign").mkdir()
+    data.symlink_to(data.parent / "foreign")
+
+
+MEDDLING = {
+    "journal gone": (lambda data: (data / JOURNAL_FILE).unlink(), "it has 0 bytes"),
+    "journal saved": (lambda data: (data / JOURNAL_FILE).write_text("{}\n"), "it has 3 bytes"),
+    "link turned": (turn_the_link, "was removed or replaced"),
+}
+
+
+@pytest.mark.timeout(PATIENCE, method="signal")
+@pytest.mark.parametrize(("meddle", "said"), MEDDLING.values(), ids=MEDDLING)
+def test_files_that_another_program_changes_stop_the_experiment_and_nothing_foreign_is_written(
+    lab, plan, tmp_path, monkeypatch, meddle, said
+):
+    monkeypatch.setattr(experiment_folder, "DISK_PERIOD", 0.01)
+    real, data = tmp_path / "real", tmp_path / "data"
+    real.mkdir()
+    data.symlink_to(real)
+
+    with pytest.raises(SinkFailed, match=said):
+        lab.run(plan, data, watcher=lab.StopAfter(2, lambda: meddle(data)))
+    assert len(find_runs(real)) < 6
+    assert not (tmp_path / "foreign").exists() or not any((tmp_path / "foreign").iterdir())
+
+
 class WaitsOn(Exception):
     """Nothing has come of a wait for far too long."""
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The files of a run are whole from the beginning; its end is written wherever it is by then."""
 
+import os
 import shutil
 import threading
 
@@ -75,6 +76,16 @@ def test_a_folder_that_goes_while_recording_is_a_failure_within_a_second(tmp_pat
     assert "log.mcap" in run.failure
     assert "removed or renamed" in run.failure
     assert set(threading.enumerate()) <= before
+
+
+def test_a_log_that_is_cut_while_recording_is_a_failure_whatever_is_written_after(tmp_path):
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 10))
+        until(lambda: count_in(run) == 10)
+        os.truncate(run.folder / "log.mcap", 100)
+        run.write("legs", some(10, 10))
+        until(lambda: run.failure is not None, limit=1.0)
+    assert "was cut to" in read_manifest(run.folder).exit_status
 
 
 def test_a_run_folder_renamed_while_recording_gets_its_end_record(tmp_path):

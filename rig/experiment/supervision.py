@@ -98,18 +98,19 @@ def repeating(
         thread.join(JOIN_TIMEOUT)
 
 
-ENDING: Final = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGTSTP")
-"""Signals that request a safe stop: termination, a lost connection or closed terminal, Ctrl-\\, and
-Ctrl-Z, because a suspended program reads no samples and checks no limits."""
+ENDING: Final = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGTSTP", "SIGUSR1", "SIGUSR2", "SIGXCPU")
+"""Signals that request a safe stop: termination, a lost connection or closed terminal, Ctrl-\\,
+Ctrl-Z, because a suspended program reads no samples and checks no limits, and others that would
+end the program."""
 
 
 @contextmanager
 def signal_stops(switch: StopSwitch) -> Iterator[None]:
     """Install handlers: SIGINT requests a stop harder than the pending one, others a safe stop.
 
-    The first SIGINT requests a soft stop; the other signals are `ENDING`: SIGTERM, SIGHUP, SIGQUIT
-    and SIGTSTP. The previous handlers are restored afterwards. A signal that is ignored stays
-    ignored, as under `nohup`, which lets a run outlive its terminal.
+    The first SIGINT requests a soft stop; the other signals are `ENDING`. The previous handlers are
+    restored afterwards. A signal that is ignored stays ignored, as under `nohup`, which lets a run
+    outlive its terminal.
 
     Args:
         switch: Receiver of the stop requests.

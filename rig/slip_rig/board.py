@@ -116,7 +116,8 @@ class RigBoard(PacketStream):
 
     def unexpired(self) -> str:
         """Return the board's status as text; empty where its watchdog has expired since `arm`."""
-        told = f"status {self._status:#x}" if self._released else "no status but 0x1 since armed"
+        silence = "no status but 0x1 since armed" if self._status else "no sample since armed"
+        told = f"status {self._status:#x}" if self._released else silence
         return "" if self._released and self._status & WATCHDOG_EXPIRED else f"board ({told})"
 
     def command_speeds(self) -> bool:

@@ -6,6 +6,7 @@ holds the verdict on its point and includes an accepted one. A run that a crash 
 therefore either finished and included, or neither.
 """
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -94,7 +95,8 @@ def finished_points(data: Path, journal: Journal) -> Finished:
             exclude_run(run, why=why)
             notices.append(f"{run.name}: {why}; this run is excluded")
     notices += [f"{name}: the run folder is missing; its point is measured again if in no other run"
-                for name in sorted(journal.accepted) if not (data / name).exists()]  # fmt: skip
+                for name in sorted(journal.accepted)
+                if not os.path.lexists(data / name)]  # fmt: skip
     zero = None
     for _, manifest in manifests:  # by name, and so by time
         if manifest.point.get("plan") == journal.plan and set(manifest.constants) >= ZEROS:

@@ -9,7 +9,7 @@ import pytest
 
 from rig.errors import PartFailed
 from rig.experiment.control import Control
-from rig.experiment.supervision import signal_stops, start_thread, supervised
+from rig.experiment.supervision import ENDING, signal_stops, start_thread, supervised
 from rig.safety import StopCategory, StopSwitch
 
 
@@ -70,8 +70,9 @@ def test_ctrl_c_asks_for_a_softer_stop_first():
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_sigterm_asks_for_a_safe_stop():
+@pytest.mark.parametrize("name", ENDING)
+def test_a_signal_that_would_end_the_program_asks_for_a_safe_stop(name):
     switch = StopSwitch()
     with signal_stops(switch):
-        os.kill(os.getpid(), signal.SIGTERM)
-    assert (switch.pending.category, switch.pending.reason) == (StopCategory.SAFE, "SIGTERM")
+        os.kill(os.getpid(), signal.Signals[name])
+    assert (switch.pending.category, switch.pending.reason) == (StopCategory.SAFE, name)

@@ -57,6 +57,7 @@ def test_only_a_watchdog_that_expired_since_arming_is_a_proof(monkeypatch):
         held.setattr(twin, "_execute", lambda packet, now: None)  # on the way for long
         twin._status = WATCHDOG_EXPIRED
         stream.leg.arm(1.0)
+        assert "no sample" in stream.unexpired()
         assert "no status" in hear(0.1)
         held.undo()
         stream.leg.disarm()

@@ -88,6 +88,13 @@ def test_the_zero_of_the_latest_run_is_known_to_the_next(lab, plan, tmp_path):
     assert (zero.normal, zero.traction) == (stored["zero_normal"], stored["zero_traction"])
 
 
+def test_a_run_folder_of_the_journal_that_cannot_exist_is_missing(lab, plan, tmp_path):
+    lab.run(plan, tmp_path)
+    journal = replace(read_journal(tmp_path), accepted={5000 * "x": 1})
+    (notice,) = finished_points(tmp_path, journal).notices
+    assert "the run folder is missing" in notice
+
+
 @pytest.mark.parametrize("damage", ["gone", "empty", "fifo"])
 def test_a_point_whose_log_is_lost_is_measured_again(lab, plan, tmp_path, damage):
     data = tmp_path / "data"

@@ -17,6 +17,8 @@ FASTEST_DRIFT: Final = 0.01
 """Largest drift of a device's clock, that of oscillators without a quartz [-]."""
 RESTART_DELAY: Final = 0.1
 """Excess of a sample's delay over the largest possible one that means a device restart [s]."""
+RESTART_JUMP: Final = 60.0
+"""Jump of a device's time ahead of the host's that means a device restart [s]."""
 LARGEST_LEAD: Final = 1.0
 """Time by which a device's clock may run ahead of the host's beyond its drift; also the time over
 which its first offset is the smallest delay [s]."""
@@ -124,8 +126,9 @@ class HostTime:
             return host  # no samples, or the device sends no time
         lag = host - device
         least, elapsed = float(lag.min()), float(host[-1]) - self._read_at
-        # A delay cannot grow faster than time passes; if it does, the device has restarted.
-        if lag[-1] > self._lag + elapsed + RESTART_DELAY:
+        # A delay cannot grow faster than time passes; if it does, the device has restarted. So it
+        # has where its unwrapped time went on by a whole period of its counter.
+        if not self._lag - RESTART_JUMP < lag[-1] <= self._lag + elapsed + RESTART_DELAY:
             self._offset, self._began = least, float(host[-1])
         else:
             self._offset = min(self._offset + FASTEST_DRIFT * max(elapsed, 0.0), least)

@@ -42,8 +42,8 @@ class HashedFile(io.BufferedWriter):
 
     def __init__(self, path: Path) -> None:
         # Always at the end: what another program cuts off is missing in the size, not a hole.
-        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o666)
-        super().__init__(io.FileIO(handle, "w"))
+        path.touch(exist_ok=False)
+        super().__init__(path.open("ab", buffering=0))
         self.sha256 = hashlib.sha256()
         self._written = self.flushed = 0
 

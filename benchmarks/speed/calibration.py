@@ -8,7 +8,6 @@ of one second at 250 Hz, and for reading the same sweep with four seconds at 1 k
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +25,6 @@ from benchmarks.speed.calibration_emcee import (
     numpy_log_likelihood,
     scipy_log_likelihood,
 )
-from benchmarks.speed.calibration_nuts import COMPARED, NUTS_CHAINS, nuts
 from benchmarks.speed.sampled import Sampled
 from benchmarks.tables import print_table
 from model.arrays import Array
@@ -152,18 +150,6 @@ def time_samplers(fit: PreparedFit) -> None:
         found = naive(fit, likelihood, seconds=NAIVE_SECONDS, per_evaluation=per_evaluation)
         figures[f"naive emcee, {library}, 1 thread"] = found
         peers[f"naive emcee with {library}'s dense likelihood (100 are asked)"] = found
-    note = ""
-    try:
-        found, drawing, apart = nuts(fit, seed=SEED)
-        figures[f"NumPyro NUTS, {NUTS_CHAINS} chains, JAX with gradients"] = found
-        peers["NUTS (20 are asked)"] = found
-        peers["NUTS without its warm-up and compilation"] = replace(found, seconds=drawing)
-        note = (
-            f" The density written in JAX differs from ours by {apart:.1e} at most, at {COMPARED} "
-            "draws."
-        )
-    except ImportError as error:
-        note = f" No row for NumPyro's NUTS: {error}."
     figures["Laplace + PSIS, 1 thread"] = weighted
     print_table(
         ("engine", "effective samples", "seconds", "effective samples a second", "R-hat"),
@@ -173,8 +159,7 @@ def time_samplers(fit: PreparedFit) -> None:
         f"The posterior of {len(fit.laplace.mode)} parameters and {len(fit.posterior.blocks):,} "
         "blocks. Effective samples are the bulk's of the worst parameter, Kish's for PSIS. All "
         "start from the Laplace approximation; seconds count everything from there on, also "
-        "burn-in, the weighted draws that decide how many moves are jumps, NUTS's warm-up and its "
-        f"compilation.{note}\n"
+        "burn-in and the weighted draws that decide how many moves are jumps.\n"
     )
     print(
         "Naive emcee is emcee's default move from a ball around the optimum, one parameter vector "

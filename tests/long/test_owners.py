@@ -61,8 +61,9 @@ for number in range(int(times)):
 
 @pytest.fixture(name="place")
 def _place(monkeypatch):
-    """Return a folder for everybody that is not in /tmp, where the twin's port is, too."""
-    with tempfile.TemporaryDirectory(dir="/var/tmp", prefix="zebro-lab-owners-") as place:
+    """Return a folder for everybody that is not in `OWN`, where the twin's port is, too."""
+    shared = "/tmp" if OWN == "/var/tmp" else "/var/tmp"  # noqa: S108
+    with tempfile.TemporaryDirectory(dir=shared, prefix="zebro-lab-owners-") as place:
         monkeypatch.setattr(tempfile, "tempdir", place)
         os.chmod(place, 0o777)  # noqa: PTH101, S103
         yield Path(place)

@@ -69,7 +69,7 @@ class Case:
 CASES = (
     Case("1.1 body lengths apart", 0.264, 5, 12, 1.0, 0.5, 0.98),
     Case("half a body apart", 0.12, 8, 16, 4.0, 2.0, 0.70),
-    Case("no marker, 1.1 body lengths apart", 0.264, 5, 10, 1.0, 0.5, 0.98, marked=False),
+    Case("no marker, 1.1 body lengths apart", 0.264, 5, 30, 1.0, 0.5, 0.98, marked=False),
     Case("no marker, half a body apart", 0.12, 8, 7, 4.0, 2.0, 0.70, marked=False),
 )
 
@@ -295,8 +295,8 @@ def test_nominal_90_percent_intervals_hold_the_truth_at_their_rate(measured):
     spread = max(0.03, 2 * float(np.sqrt(0.09 / len(row.error))))
     assert (row.inside >= 0.9 - spread).all()
     assert (row.inside[:2] <= 0.9 + spread).all() or not case.marked
-    # Headings of exposures that overlap are told too wide, by a third at most.
-    assert np.mean((row.error[:, 2] / row.sd[:, 2]) ** 2) > 0.65**2
+    # Headings are told too wide: of overlapping exposures by a third, without a marker by two.
+    assert np.mean((row.error[:, 2] / row.sd[:, 2]) ** 2) > (0.65 if case.marked else 0.5) ** 2
 
 
 @dataclass(frozen=True)

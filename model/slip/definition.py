@@ -6,7 +6,11 @@ passes the contact (r·omega), and v_g, at which the ground does (the forward sp
 without slip and positive when the leg's surface outruns the ground.
 """
 
+import math
+from collections.abc import Mapping
 from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,11 +31,14 @@ class SlipDefinition(StrEnum):
             -1 when it is locked.
         LARGER: (v_l - v_g) / max(v_l, v_g): soil bins. 1 when the leg spins on the spot, -1 when it
             is locked.
+        MEAN: (v_l - v_g) / ((v_l + v_g)/2): slide-to-roll ratio of tribometers, creepage of rails.
+            2 when the leg spins on the spot, -2 when it is locked.
     """
 
     MATERIAL = "material"
     TRAVEL = "travel"
     LARGER = "larger"
+    MEAN = "mean"
 
 
 def slip_ratio(
@@ -51,13 +58,33 @@ def slip_ratio(
     (np.float64(0.25), np.float64(0.333))
     """
     v_l, v_g = np.asarray(speed_leg, dtype=float), np.asarray(speed_ground, dtype=float)
-    divisor = {
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return (v_l - v_g) / _divisor(v_l, v_g, SlipDefinition(definition))
+
+
+def _divisor(v_l: Array, v_g: Array, definition: SlipDefinition) -> Array:
+    """Return the speed that a slip definition divides by, in the unit of both speeds."""
+    return {
         SlipDefinition.MATERIAL: v_l,
         SlipDefinition.TRAVEL: v_g,
         SlipDefinition.LARGER: np.maximum(v_l, v_g),
-    }[SlipDefinition(definition)]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return (v_l - v_g) / divisor
+        SlipDefinition.MEAN: (v_l + v_g) / 2,
+    }[definition]
+
+
+def _speeds(kappa: Array, definition: SlipDefinition) -> tuple[Array, Array]:
+    """Return v_l and v_g that have given slip ratios, in the unit of the speed divided by.
+
+    Where slip is infinite, that speed is 0 and the other one 1.
+    """
+    if definition is SlipDefinition.MEAN:
+        return 1 + kappa / 2, 1 - kappa / 2
+    larger = definition is SlipDefinition.LARGER
+    by_leg = kappa >= 0 if larger else definition is SlipDefinition.MATERIAL
+    infinite = np.isinf(kappa)
+    divisor = np.where(infinite, 0.0, 1.0)
+    other = np.where(infinite, 1.0, 1 + np.where(by_leg, -kappa, kappa))
+    return np.where(by_leg, divisor, other), np.where(by_leg, other, divisor)
 
 
 def convert_slip(
@@ -65,7 +92,7 @@ def convert_slip(
 ) -> Array:
     """Convert slip ratios from one definition to another.
 
-    By way of the material slip s = 1 - v_g/v_l, with travel slip = s/(1 - s).
+    By way of the two speeds: the slip ratios of a contact differ by what they are divided by.
 
     Args:
         slip: Slip ratio in `source`'s definition [-].
@@ -89,19 +116,11 @@ def convert_slip(
     if source is target:
         return kappa
     _require_possible(kappa, source)
+    v_l, v_g = _speeds(kappa, source)
     with np.errstate(divide="ignore", invalid="ignore"):
-        if source is SlipDefinition.TRAVEL:
-            s = np.where(np.isposinf(kappa), 1.0, kappa / (1 + kappa))
-        elif source is SlipDefinition.LARGER:
-            s = np.where(kappa >= 0, kappa, kappa / (1 + kappa))
-        else:
-            s = kappa
-        travel = np.where(np.isneginf(s), -1.0, s / (1 - s))
-    if target is SlipDefinition.TRAVEL:
-        return travel
-    if target is SlipDefinition.LARGER:
-        return np.where(s >= 0, s, travel)
-    return s
+        # not v_l - v_g, which has lost the digits of a small slip
+        scaled = kappa * _divisor(v_l, v_g, source)
+        return np.where(np.isfinite(kappa), scaled, v_l - v_g) / _divisor(v_l, v_g, target)
 
 
 def slip_per_radius_error(slip: ArrayLike, definition: SlipDefinition | str) -> Array:
@@ -109,7 +128,8 @@ def slip_per_radius_error(slip: ArrayLike, definition: SlipDefinition | str) -> 
 
     With :math:`v_g/v_l` taken too small by a factor :math:`1 + \varepsilon`, the true slip is the
     computed one less :math:`\varepsilon` times this, to first order: 1 - slip for material slip,
-    1 + slip for travel slip, 1 - abs(slip) for the slip over the larger speed.
+    1 + slip for travel slip, 1 - abs(slip) for the slip over the larger speed, 1 - slip^2/4 for
+    that over the mean speed.
 
     Args:
         slip: Slip ratio in `definition` [-].
@@ -117,9 +137,12 @@ def slip_per_radius_error(slip: ArrayLike, definition: SlipDefinition | str) -> 
     """
     kappa = np.asarray(slip, dtype=float)
     definition = SlipDefinition(definition)
-    if definition is SlipDefinition.MATERIAL:
-        return 1 - kappa
-    return 1 + kappa if definition is SlipDefinition.TRAVEL else 1 - np.abs(kappa)
+    return {
+        SlipDefinition.MATERIAL: 1 - kappa,
+        SlipDefinition.TRAVEL: 1 + kappa,
+        SlipDefinition.LARGER: 1 - np.abs(kappa),
+        SlipDefinition.MEAN: 1 - kappa**2 / 4,
+    }[definition]
 
 
 def walk_slip_from_material(slip: ArrayLike, leg_angle: ArrayLike) -> Array:
@@ -158,12 +181,13 @@ def require_definition(found: SlipDefinition | str, expected: SlipDefinition | s
         raise DefinitionMismatch(str(found), str(expected))
 
 
-_LOWER = {
-    SlipDefinition.MATERIAL: -np.inf,
-    SlipDefinition.TRAVEL: -1.0,
-    SlipDefinition.LARGER: -1.0,
-}
-_UPPER = {SlipDefinition.MATERIAL: 1.0, SlipDefinition.TRAVEL: np.inf, SlipDefinition.LARGER: 1.0}
+RANGES: Final[Mapping[SlipDefinition, tuple[float, float]]] = MappingProxyType({
+    SlipDefinition.MATERIAL: (-math.inf, 1.0),
+    SlipDefinition.TRAVEL: (-1.0, math.inf),
+    SlipDefinition.LARGER: (-1.0, 1.0),
+    SlipDefinition.MEAN: (-2.0, 2.0),
+})  # fmt: skip
+"""Least and largest slip ratio of each definition while both discs turn forward [-]."""
 
 
 def is_possible(slip: ArrayLike, definition: SlipDefinition) -> NDArray[np.bool_]:
@@ -178,8 +202,8 @@ def is_possible(slip: ArrayLike, definition: SlipDefinition) -> NDArray[np.bool_
     >>> is_possible([0.5, 1.002], SlipDefinition.MATERIAL)
     array([ True, False])
     """
-    kappa = np.asarray(slip, dtype=float)
-    return ~((kappa < _LOWER[definition]) | (kappa > _UPPER[definition]))
+    kappa, (least, largest) = np.asarray(slip, dtype=float), RANGES[definition]
+    return ~((kappa < least) | (kappa > largest))
 
 
 def _require_possible(kappa: Array, definition: SlipDefinition) -> None:
@@ -187,7 +211,7 @@ def _require_possible(kappa: Array, definition: SlipDefinition) -> None:
     impossible = ~is_possible(kappa, definition)
     if np.any(impossible):
         raise DomainError(
-            f"slip ratio {kappa[impossible].flat[0]:.4g} is outside "
-            f"[{_LOWER[definition]:g}, {_UPPER[definition]:g}], all that '{definition}' slip "
-            f"can be while both discs turn forward; check the definition or leave these rows out"
+            f"slip ratio {kappa[impossible].flat[0]:.4g} is outside {RANGES[definition]}, all that "
+            f"'{definition}' slip can be while both discs turn forward; check the definition or "
+            "leave these rows out"
         )

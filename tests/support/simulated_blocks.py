@@ -137,6 +137,8 @@ def slip_of_true_radii(slip: Array, error: float, definition: SlipDefinition) ->
         ratio = one_minus
     elif definition is SlipDefinition.TRAVEL:
         ratio = over_leg
+    elif definition is SlipDefinition.MEAN:
+        ratio = (2 - slip) / (2 + slip)
     else:
         ratio = np.where(slip >= 0, one_minus, over_leg)
     return slip_ratio(1.0, ratio * (1 + error), definition)

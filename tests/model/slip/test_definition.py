@@ -42,8 +42,9 @@ def test_slip_is_positive_exactly_when_the_leg_outruns_the_ground(v_l, v_g, defi
 
 @pytest.mark.parametrize(
     ("definition", "spinning", "locked"),
-    [("material", 1.0, -math.inf), ("travel", math.inf, -1.0), ("larger", 1.0, -1.0)],
-)
+    [("material", 1.0, -math.inf), ("travel", math.inf, -1.0), ("larger", 1.0, -1.0),
+     ("mean", 2.0, -2.0)],
+)  # fmt: skip
 def test_spinning_and_locked_legs_have_the_limits_the_definition_names(
     definition, spinning, locked
 ):
@@ -57,9 +58,17 @@ def test_definitions_share_their_slope_at_zero_slip(source, target):
     assert convert_slip(step, source, target) / step == pytest.approx(1.0, abs=1e-5)
 
 
+@given(DEFINITIONS, DEFINITIONS, st.booleans())
+def test_the_limit_of_one_definition_is_that_of_any_other(source, target, leg_stands):
+    speeds = (0.0, 0.4) if leg_stands else (0.4, 0.0)
+    assert convert_slip(slip_ratio(*speeds, source), source, target) == slip_ratio(*speeds, target)
+
+
 @pytest.mark.parametrize(
-    ("slip", "source"), [(1.01, "material"), (-1.01, "travel"), (1.01, "larger"), (-1.01, "larger")]
-)
+    ("slip", "source"),
+    [(1.01, "material"), (-1.01, "travel"), (1.01, "larger"), (-1.01, "larger"), (2.01, "mean"),
+     (-2.01, "mean")],
+)  # fmt: skip
 def test_slip_no_forward_turning_discs_can_have_is_refused(slip, source):
     target = "travel" if source != "travel" else "material"
     with pytest.raises(DomainError, match=f"{slip}.*'{source}'"):

@@ -54,6 +54,8 @@ class SlipSamples:
         time: Time of each sample, increasing within a run, shape (n,) [s]; None for samples
             without times (averages over a trial).
         angles: Angles of the discs; None where none are recorded.
+        force_sd: Standard deviation of each sample's traction force, as of a mean over a trial,
+            shape (n,) [N]; None where none is stated.
     """
 
     slip: Array
@@ -64,6 +66,7 @@ class SlipSamples:
     definition: SlipDefinition
     time: Array | None = None
     angles: DiscAngles | None = None
+    force_sd: Array | None = None
 
     def __len__(self) -> int:
         """Return the number of samples."""

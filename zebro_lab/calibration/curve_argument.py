@@ -19,7 +19,7 @@ from zebro_lab.calibration.coulomb_argument import COULOMB, coulomb_numbers
 from zebro_lab.calibration.slip_argument import THESIS
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.tables.columns_file import rig_columns
-from zebro_lab.tables.rig_table import RigTable, normal_force
+from zebro_lab.tables.rig_table import RigTable, normal_force, traction
 from zebro_lab.tables.row_conditions import kept_rows
 from zebro_lab.tables.slip_source import slip
 from zebro_lab.tables.table_files import is_table_file, read_table_file
@@ -193,7 +193,7 @@ def is_curve_table(path: Path) -> bool:
         return False
     columns = rig_columns(path)
     raw = read_table_file(path, sheet=columns.sheet)
-    samples = {"t", "run", "omega_leg", "omega_ground"}
+    samples = {"t", "run", "omega_leg", "omega_ground", "speed_leg", "speed_ground"}
     has_runs = bool(columns.runs.by) or columns.runs.gap is not None
     return not (has_runs or samples & {*raw.columns, *columns.columns})
 
@@ -214,12 +214,12 @@ def read_curve_table(path: Path, *, columns: Path | None = None) -> CurveTable:
     table = RigTable(raw, entries, kept_rows(raw, entries.keep))
     if len(table.rows) < _FEWEST:
         raise DataError(f"has {len(table.rows)} points; a curve needs {_FEWEST} or more", file=path)
-    ratio = slip(table)
+    ratio, load = slip(table), normal_force(table)
     sources = [each for each in (entries.source, raw.source) if each]
     return CurveTable(
         slip=ratio.ratio,
-        load=normal_force(table),
-        traction=table.si("traction_force"),
+        load=load,
+        traction=traction(table, load)[0],
         definition=ratio.definition,
         source=sources[0] if sources else "unknown",
         files=(path,) if entries.file is None else (path, entries.file),

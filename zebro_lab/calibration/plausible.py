@@ -7,8 +7,9 @@ import numpy as np
 
 from model.arrays import Array
 from zebro_lab.files.errors import DataError
+from zebro_lab.tables.rig_columns import CANONICAL
 from zebro_lab.tables.rig_table import RigTable
-from zebro_lab.tables.slip_source import SlipColumn
+from zebro_lab.tables.slip_source import DISCS, SlipColumn, speed_column, surface_speed
 
 LARGEST_RADIUS: Final = 3.0
 """Largest radius of a disc [m]; drums of tyre test benches have up to 1.7 m."""
@@ -50,7 +51,7 @@ def require_plausible(
             the slip, or is far beyond the largest normal force in a row.
     """
     doubts: tuple[str, ...] = ()
-    if slip.column == "omega_leg":
+    if slip.column != "slip_ratio":
         _require_radii(table)
         _require_slip(table, slip.ratio)
         doubts = _exchanged_radii(table)
@@ -63,12 +64,12 @@ def require_plausible(
         f"the traction force is {ratio:.2g} times the normal force, {_typical(traction_force)} to "
         f"{_typical(normal_force)} N; expected {FRICTION[0]:g} to {FRICTION[1]:g}"
     )
-    unstated = [n for n in ("normal_force", "traction_force") if not _is_stated(table, n)]
+    unstated = [n for n in ("normal_force", table.traction) if not _is_stated(table, n)]
     if not unstated:
         return (*doubts, f"IMPROBABLE FORCES: {found}: check their units")
     raise table.raw.fault(
         f"{found}; state the unit of the forces in {table.columns.stated_in}, such as "
-        + " and ".join(f'[columns.{name}] unit = "N"' for name in unstated)
+        + " and ".join(f'[columns.{n}] unit = "{CANONICAL[n].unit}"' for n in unstated)
         + " if it is right",
         table.required(unstated[0]).name,
     )
@@ -80,9 +81,9 @@ def _require_no_stray(table: RigTable, normal_force: Array, traction_force: Arra
     It marks a missing value, such as -9999.
     """
     limit = STRAY * float(np.max(normal_force))
-    header = table.required("traction_force").name
+    header = table.required(table.traction).name
     table.require(
-        "traction_force",
+        table.traction,
         np.abs(traction_force) <= limit,
         lambda value: (
             f"found {value}, more than {STRAY:g} times the largest normal force, "
@@ -98,16 +99,16 @@ def _typical(force: Array) -> str:
 
 
 def _is_stated(table: RigTable, name: str) -> bool:
-    """Return whether file or column map state the unit of a column; recorded runs are in SI."""
-    column = table.required(name)
-    if table.raw.path.is_dir() or column.unit_stated:
+    """Return whether file or column map state the unit of a force; recorded runs are in SI."""
+    column = table.source_of(name)
+    if column is None or table.raw.path.is_dir() or column.unit_stated:
         return True
-    return table.raw.unit_of(column.name, "N") is not None
+    return table.raw.unit_of(column.name, CANONICAL[name].unit or "") is not None
 
 
 def _require_radii(table: RigTable) -> None:
     """Raise `DataError` if a radius is above `LARGEST_RADIUS`, as of a number in mm."""
-    for name in ("radius_leg", "radius_ground"):
+    for name in table.radii():
         largest = float(np.max(table.constant_or_column(name)))
         if largest > LARGEST_RADIUS:
             raise DataError(
@@ -122,8 +123,8 @@ def _require_slip(table: RigTable, ratio: Array) -> None:
 
     Or if the slip ratio, shape (n,), is beyond `LARGEST_SLIP` in more than half of them.
     """
-    omega_leg, omega_ground = (table.si(name) for name in ("omega_leg", "omega_ground"))
-    opposite = float(np.mean(omega_leg * omega_ground < 0))
+    speed_leg, speed_ground = (surface_speed(table, disc) for disc in DISCS)
+    opposite = float(np.mean(speed_leg * speed_ground < 0))
     beyond = float(np.mean(np.abs(ratio) > LARGEST_SLIP))
     if opposite > 0.9:
         found = f"the discs turn in opposite directions in {opposite:.0%} of the rows"
@@ -141,7 +142,7 @@ def _require_slip(table: RigTable, ratio: Array) -> None:
         return
     raise table.raw.fault(
         f"{found}; {advice}, or give the slip ratio itself as a column",
-        table.required("omega_leg").name,
+        table.required(speed_column(table, "leg")).name,
     )
 
 
@@ -150,6 +151,8 @@ def _exchanged_radii(table: RigTable) -> tuple[str, ...]:
 
     The 5 % quantile of its size is `_ALL_LARGE` or more, and would be `_REACHES` or less.
     """
+    if any(speed_column(table, disc).startswith("speed") for disc in DISCS):
+        return ()
     turns = table.si("omega_ground") / table.si("omega_leg")
     ratio = table.constant_or_column("radius_ground") / table.constant_or_column("radius_leg")
     stated, exchanged = (np.quantile(np.abs(1 - turns * r), 0.05) for r in (ratio, 1 / ratio))
@@ -172,10 +175,10 @@ def _require_one_sign(table: RigTable, ratio: Array, traction_force: Array) -> N
     opposed = ratio[slipping] * traction_force[slipping] < 0
     if len(opposed) < _FEWEST or np.mean(opposed) < _OPPOSED:
         return
-    source = table.required("traction_force")
+    source = table.required(table.traction)
     raise table.raw.fault(
         f"the traction force opposes the slip in {np.mean(opposed):.0%} of the rows that slip; "
-        "expected both positive where the leg drives: set [columns.traction_force] sign = "
+        f"expected both positive where the leg drives: set [columns.{table.traction}] sign = "
         f"{-1 if source.factor > 0 else 1} in {table.columns.stated_in}, or that of slip_ratio; "
         "or exchange the columns of the two speeds, if they are swapped",
         source.name,

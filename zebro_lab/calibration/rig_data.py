@@ -91,7 +91,8 @@ def read_rig_data(
     Args:
         paths: Files, folders of files, run folders, folders of run folders; several.
         columns: A `columns.toml` for all data, instead of those beside the data.
-        slip_definition: Definition to convert all slip ratios to; None keeps that of the data.
+        slip_definition: Definition to convert all slip ratios to; None keeps that of the data, but
+            converts `mean` to `material`.
 
     Raises:
         ZebroLabError: A path, column map or the data is invalid; slip definitions or load cells
@@ -325,7 +326,8 @@ def _notes(parts: Sequence[RigPart]) -> list[str]:
         rules[part.runs.rule] += len(part.runs.names)
     runs = [f"{counted(count, 'run')}, {rule}" for rule, count in rules.items()]
     others = dict.fromkeys(note for part in parts for note in part.notes)
-    return [*origins, *runs, *_rows_left_out(parts), *_time_note(parts), *others]
+    partial = (*_partial(parts, "time", "time"), *_partial(parts, "force_sd", "traction_force_sd"))
+    return [*origins, *runs, *_rows_left_out(parts), *partial, *others]
 
 
 def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
@@ -340,9 +342,9 @@ def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
     return [f"{read[c] - kept[c]} of {read[c]} rows left out; kept where {c}" for c in read]
 
 
-def _time_note(parts: Sequence[RigPart]) -> list[str]:
-    """Return a note if some parts have times and others not: then none are used."""
-    timed = sum(part.time is not None for part in parts)
-    if timed in (0, len(parts)):
+def _partial(parts: Sequence[RigPart], attribute: str, what: str) -> list[str]:
+    """Return a note if some parts have an attribute and others None: then it is not used."""
+    have = sum(getattr(part, attribute) is not None for part in parts)
+    if have in (0, len(parts)):
         return []
-    return [f"{len(parts) - timed} of {len(parts)} files have no time, so no times are used"]
+    return [f"{len(parts) - have} of {len(parts)} files have no {what}, so none is used"]

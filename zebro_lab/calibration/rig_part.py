@@ -24,9 +24,9 @@ from zebro_lab.runs.manifest import RIG, TABLE
 from zebro_lab.tables.disc_angles import disc_angles, joined_angles
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_columns import RigColumns, RunRule
-from zebro_lab.tables.rig_table import RigTable, normal_force
+from zebro_lab.tables.rig_table import RigTable, normal_force, traction
 from zebro_lab.tables.row_conditions import kept_rows
-from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
+from zebro_lab.tables.run_separation import Runs, run_times, separate_runs, without_left_out
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file
 
@@ -86,6 +86,7 @@ class RigPart:
         files: Every file read, the column map last, if there is one.
         lateral: Sums of the lateral force of each run, see `lateral_sums`; None without one.
         angles: Angles of the discs; None where none are recorded, or they cannot be used.
+        force_sd: Standard deviation of each row's traction, shape (n,) [N]; None where not stated.
     """
 
     path: Path
@@ -102,6 +103,7 @@ class RigPart:
     files: tuple[Path, ...]
     lateral: Array | None = None
     angles: DiscAngles | None = None
+    force_sd: Array | None = None
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -128,6 +130,7 @@ class RigPart:
             time=None if self.time is None else self.time[rows],
             lateral=None if self.lateral is None else self.lateral[chosen],
             angles=None if self.angles is None else self.angles.of_rows(rows),
+            force_sd=None if self.force_sd is None else self.force_sd[rows],
         )
 
 
@@ -141,7 +144,8 @@ def read_part(
         columns: Column map; for a run folder only its row conditions, load cell, priors and errors
             of the rig apply.
         label: Prefix of the names of the runs.
-        wanted: Definition to convert slip ratios to; None keeps that of the data.
+        wanted: Definition to convert slip ratios to; None keeps that of the data, but converts
+            `mean` to `material`.
 
     Raises:
         ZebroLabError: The file, its column map or its data are invalid.
@@ -150,13 +154,16 @@ def read_part(
         raw, columns, files = _run_folder_table(source.path, columns)
     else:
         raw, files = read_table_file(source.path, sheet=columns.sheet), (source.path,)
-    table = RigTable(raw, columns, kept_rows(raw, columns.keep))
-    slip_column, pressed, traction = slip(table), normal_force(table), table.si("traction_force")
-    doubts = require_plausible(table, slip_column, pressed, traction)
+    table, left_out = without_left_out(RigTable(raw, columns, kept_rows(raw, columns.keep)))
+    slip_column, pressed = slip(table), normal_force(table)
+    force, force_sd = traction(table, pressed)
+    doubts = require_plausible(table, slip_column, pressed, force)
+    if wanted is None and slip_column.definition is SlipDefinition.MEAN:
+        wanted = SlipDefinition.MATERIAL  # advice on a fit knows what a rig can hold in the others
     if wanted is not None:
         slip_column = converted(table, slip_column, wanted)
     runs = separate_runs(table, label)
-    time = run_times(table, runs)
+    time, untimed = run_times(table, runs)
     angles, unused = disc_angles(table, runs, time)
     return RigPart(
         path=source.path,
@@ -165,14 +172,15 @@ def read_part(
         rows_read=len(raw),
         slip=slip_column,
         normal_force=pressed,
-        traction_force=traction,
+        traction_force=force,
         rig_errors=columns.rig_errors.resolved(table.radii()),
         runs=runs,
         time=time,
-        notes=(*raw.notes, *table.conversions(), *doubts, *unused),
+        notes=(*raw.notes, *table.conversions(), *left_out, *doubts, *untimed, *unused),
         files=files if columns.file is None else (*files, columns.file),
-        lateral=lateral_sums(table, pressed, traction, runs.index, len(runs.names)),
+        lateral=lateral_sums(table, pressed, force, runs.index, len(runs.names)),
         angles=angles,
+        force_sd=force_sd,
     )
 
 
@@ -202,10 +210,11 @@ def _run_folder_table(
 def joined_samples(parts: Sequence[RigPart]) -> SlipSamples:
     """Join the samples of all parts, runs numbered throughout.
 
-    Times are kept only if all parts have them, and the angle of a disc likewise.
+    Times are kept only if all parts have them, angles of a disc and standard deviations likewise.
     """
     first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
     timed = [part.time for part in parts if part.time is not None]
+    stated = [part.force_sd for part in parts if part.force_sd is not None]
     return SlipSamples(
         slip=np.concatenate([part.slip.ratio for part in parts]),
         normal_force=np.concatenate([part.normal_force for part in parts]),
@@ -217,6 +226,7 @@ def joined_samples(parts: Sequence[RigPart]) -> SlipSamples:
         definition=parts[0].slip.definition,
         time=np.concatenate(timed) if len(timed) == len(parts) else None,
         angles=joined_angles([part.angles for part in parts])[0],
+        force_sd=np.concatenate(stated) if len(stated) == len(parts) else None,
     )
 
 

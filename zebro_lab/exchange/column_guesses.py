@@ -12,7 +12,7 @@ from model.arrays import Array
 from zebro_lab.exchange.column_names import NAMES, WEAK, leg_of, plain_name, split_header
 from zebro_lab.exchange.unit_guesses import UnitGuess, guess_unit
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.files.units import factor_to_si
+from zebro_lab.files.units import factor_to_si, is_unit_of
 from zebro_lab.robot.imu_log import IMU_UNITS, is_in_g
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS
 from zebro_lab.tables.columns import IMU, KINDS, LEGS, RIG, TRACK
@@ -26,7 +26,8 @@ UNITS: Final[Mapping[str, Mapping[str, str | None]]] = {
 """SI unit of each canonical column, None for text, by kind of table."""
 _SHORT: Final = {"t_s": "t", "x_m": "x", "y_m": "y", "z_m": "z", "yaw_rad": "yaw"}
 _SIGNED: Final = {
-    "traction_force", "slip_ratio", "roll", "pitch", "yaw", "yaw_rad", "y_m", *ANGLES,
+    "traction_force", "traction_coefficient", "slip_ratio", "roll", "pitch", "yaw", "yaw_rad",
+    "y_m", *ANGLES,
     *(f"{name}_{axis}" for name in ("rate", "force") for axis in "xyz"),
 }  # fmt: skip
 """Columns whose sign is a convention that no table shows."""
@@ -39,6 +40,12 @@ _UPRIGHT = re.compile(r"p_RS_R_[xyz].*|t[xyz]")
 _EVERYBODYS: Final = frozenset(("t", "x", "y", "z", "roll", "pitch", "yaw"))
 """Canonical names that other programs use, too, in other units."""
 _FORCES = ("force_x", "force_y", "force_z")
+_OTHER_QUANTITY: Final = {
+    "omega_leg": "m/s", "omega_ground": "m/s", "speed_leg": "rad/s", "speed_ground": "rad/s",
+    "traction_force": "dimensionless", "traction_coefficient": "N",
+    "traction_force_sd": "dimensionless", "traction_coefficient_sd": "N",
+}  # fmt: skip
+"""Unit by which a header that may mean a canonical column is known to mean another one."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +114,12 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
     shared = (*_EVERYBODYS, *QUATERNION)
     ours = any(name in UNITS[kind] and name not in shared for name in table.columns)
     for canonical in UNITS[kind]:
+        if canonical.startswith("traction_coefficient") and "traction_force" in guesses:
+            continue
         fitting = [
             name for name in table.columns
             if name not in taken and _fits(name, canonical, kind, lowest_leg)
+            and not _states_other(table, name, canonical)
         ]  # fmt: skip
         fitting.sort(key=lambda name: (not is_canonical(name, canonical), _is_weak(name)))
         if fitting:
@@ -239,6 +249,14 @@ def _fits(header: str, canonical: str, kind: str, lowest_leg: int) -> bool:
     return any(re.fullmatch(pattern, name) for name in names)
 
 
+def _states_other(table: RawTable, header: str, canonical: str) -> bool:
+    """Return whether the file states a unit by which a header means `_OTHER_QUANTITY`."""
+    if canonical not in _OTHER_QUANTITY:
+        return False
+    unit = table.unit_of(header, UNITS[RIG][canonical] or "")
+    return unit is not None and is_unit_of(unit, _OTHER_QUANTITY[canonical])
+
+
 def _is_weak(header: str) -> bool:
     """Return whether a header, without its unit, is one of `WEAK`, which may mean other columns."""
     return split_header(header)[0] in WEAK
@@ -319,7 +337,7 @@ def _sign(canonical: str, numbers: Array | None, *, known: bool) -> tuple[int, s
         numbers: Its numbers, angles in rad, shape (n,); None if they cannot be read.
         known: Whether the header alone tells that the sign is canonical.
     """
-    pressed = canonical == "normal_force" or canonical.startswith("omega_")
+    pressed = canonical.startswith(("normal_force", "omega_", "speed_"))
     if numbers is None:
         open_sign = pressed or (canonical in _SIGNED and not known)
         return 1, "its numbers cannot be read, which would show it" if open_sign else ""

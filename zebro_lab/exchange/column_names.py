@@ -10,13 +10,17 @@ from zebro_lab.tables.columns import IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.header_units import suffix_in_header, unit_in_header
 
 _TIME = (
-    r"t|et|time|(elapsed|relative|log|record|sample|capture)_?time|__time|(time_?)?stamp|seconds|"
+    r"t|et|time|(elapsed|relative|log|record|sample|capture|step|test)_?time|__time|(time_?)?stamp|seconds|"
     r"zeit(stempel|punkt|achse)?|messzeit|sekunden|uhrzeit|clock|(wall|local)_?(clock|time)|time_of_day|datum(_?(und_?)?(uhr)?zeit)?|"
     r"date(_?(and_?)?time)?|x_value|millis|micros|(zeit|time)_\d.*|(field_)?header_stamp(_secs?)?|time_seconds|secs?|rosbagtimestamp"
 )
 _SPEED = r"(omega|w|speed|rate|drehzahl|rpm|winkelgeschw(indigkeit)?|angular_(speed|velocity))"
-_LEG_DISC = r"(l|(leg|foot|wheel)(_?disc)?|(bein|fuss|rad)_?(scheibe)?)"
-_GROUND = r"(g|ground|ground_?disc|table|boden|bodenscheibe|teller|tisch|belt|road|fahrbahn)"
+_SURFACE = r"((surface|rim|linear|umfangs)_?)?(speed|velocity|geschw(indigkeit)?|v|u)"
+_LEG_DISC = r"(l|(leg|foot|wheel)(_?disc)?|dis[ck]|(bein|fuss|rad)_?(scheibe)?)"
+_GROUND = (
+    r"(g|ground|ground_?disc|dis[ck]|ball|drum|roller|rail|carriage|vehicle|travel|forward|table|boden|"
+    r"bodenscheibe|teller|tisch|belt|road|fahrbahn)"
+)
 _TURNS = rf"n_?{_LEG_DISC}"  # German for speed: n
 _GROUND_TURNS = "(n|drehzahl)_?(ground|ground_?disc|belt|boden|bodenscheibe|teller|tisch|scheibe)"
 _CELL = r"(_?(load_?cell|sensor|transducer|kraft(aufnehmer|sensor)|aufnehmer|messdose|kmd))?"
@@ -26,6 +30,24 @@ _FORCE = (
     r"(.*_)?(linear_acceleration|acceleration|accel(erometer)?|acc|a|beschleunigung|"
     r"specific_force|force)_?"
 )
+_SD = r"(std|sd|std_?dev|standard_(deviation|error)|sem|stabw|standardabweichung|sigma)"
+_MEAN = r"(_(avg|mean))?"
+_TRACTION = (
+    rf"(((avg|mean)_)?((ft|fx|f_t|f_x){_CELL}|(traction|tangential|longitudinal|friction|drive|driving|"
+    r"tractive|frictional|pull)(_?force)?|dp|(drawbar_?)?pull|(net|gross)_traction|tractive_effort|"
+    r"zugkraft|traktionskraft|tangentialkraft|l(ä|ae)ngskraft|umfangskraft|reibkraft|"
+    rf"kraft_?(x|t|tangential)|force_?(x|t)){_MEAN})"
+)
+_COEFFICIENT = (
+    r"(((avg|mean)_)?(mu|cof|(traction|friction|adhesion|drawbar_?pull)_?(coeff?(icient)?|ratio)|"
+    r"coeff?(icient)?_of_(friction|traction|adhesion)|reib(ungs)?(beiwert|wert|zahl|koeffizient)|"
+    rf"kraftschluss(beiwert)?|dp_w|f_?[tx]_f_?[nz]|friction){_MEAN})"
+)
+MEAN_SLIP: Final = (
+    r"srr(_(percent|pct|prozent))?|slide_?(to_?)?roll(ing)?(_ratio)?|"
+    r"((long(itudinal)?|rolling)_)?creep(age)?(_?(x|ratio))?|(xi|ξ)_?x?"
+)
+"""Names of slip over the mean of both speeds."""
 # `_position` closes the first group.
 _POSITION = r"((.*_)?(pos(ition)?|translation|p|global_position)_?"
 
@@ -48,6 +70,8 @@ NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
         "t": _TIME,
         "omega_leg": rf"{_SPEED}_?{_LEG_DISC}|{_LEG_DISC}_?{_SPEED}|{_TURNS}|drehzahl",
         "omega_ground": rf"{_SPEED}_?{_GROUND}|{_GROUND}_?{_SPEED}|{_GROUND_TURNS}",
+        "speed_leg": rf"{_SURFACE}_?{_LEG_DISC}|{_LEG_DISC}_?{_SURFACE}",
+        "speed_ground": rf"{_SURFACE}_?{_GROUND}|{_GROUND}_?{_SURFACE}",
         "angle_leg": r"(angle|winkel|position|pos)_leg(_?disc)?|leg_disc_(angle|position)",
         "angle_ground":
             r"(angle|winkel|position|pos)_ground(_?disc)?|ground_disc_(angle|position)",
@@ -55,15 +79,15 @@ NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
         "radius_ground": r"(radius|r)_(g|ground|boden)",
         "slip_ratio":
             r"(kappa|slip|l(ae|ä)ngsschlupf|schlupf)(_?(ratio|inst|long|x|percent|pct|prozent|wert)"
-            r")?|sl|sr|(longitudinal|wheel)_slip(_ratio)?",
+            rf")?{_MEAN}|sl|sr|(longitudinal|wheel)_slip(_ratio)?|{MEAN_SLIP}",
         "normal_force":
-            rf"((avg|mean)_)?((fn|fz|f_n|f_z){_CELL}|load|normal|(normal|vertical)_?(force|load)|normalkraft|"
-            r"aufstandskraft|radlast|vertikalkraft|anpresskraft|last|kraft_?(z|n|normal)|"
-            r"force_?(z|n))|kraft|force",
-        "traction_force":
-            rf"((avg|mean)_)?((ft|fx|f_t|f_x){_CELL}|(traction|tangential|longitudinal|friction|drive|driving)"
-            r"(_?force)?|zugkraft|traktionskraft|tangentialkraft|l(ä|ae)ngskraft|umfangskraft|"
-            r"reibkraft|kraft_?(x|t|tangential)|force_?(x|t))",
+            rf"((avg|mean)_)?((fn|fz|f_n|f_z){_CELL}|((ball|wheel|applied|contact|test)_)?(load|weight)|w|"
+            r"normal|(normal|vertical)_?(force|load)|normalkraft|aufstandskraft|radlast|"
+            rf"vertikalkraft|anpresskraft|last|kraft_?(z|n|normal)|force_?(z|n)){_MEAN}|kraft|force",
+        "traction_force": _TRACTION,
+        "traction_coefficient": _COEFFICIENT,
+        "traction_force_sd": rf"{_TRACTION}_?{_SD}|{_SD}_?(of_)?{_TRACTION}",
+        "traction_coefficient_sd": rf"{_COEFFICIENT}_?{_SD}|{_SD}_?(of_)?{_COEFFICIENT}",
         "lateral_force": r"(lateral|side|transverse)_?force|seitenkraft|querkraft",
         "run": r"run(_?(id|nr|no|number))?|versuch(s?_?(nr|nummer))?|lauf(_?nr)?",
         "slip_definition": r"slip_definition",
@@ -91,7 +115,7 @@ NAMES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType({
 
 WEAK: Final = frozenset({
     "kraft", "force", "drehzahl", "angle", "winkel", "last", "load", "n_scheibe",
-    "drehzahl_scheibe",
+    "drehzahl_scheibe", "w", "weight", "pull", "friction", "ball_speed", "disc_speed", "disk_speed",
 })  # fmt: skip
 """Names that may well be another column: always a guess to check."""
 

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: MIT
 """Format guessed columns as a commented `columns.toml`; each guess to check ends in "?"."""
 
+import re
 from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 import tomlkit
 
+from model.slip.definition import SlipDefinition
 from zebro_lab.exchange.column_guesses import UNITS, ColumnGuess, numbers_or_none
+from zebro_lab.exchange.column_names import MEAN_SLIP, split_header
 from zebro_lab.tables.columns import COLUMNS_FILE, IMU, LEGS, RIG, TRACK
 from zebro_lab.tables.columns_sections import DOUBT
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.rig_columns import CANONICAL
+from zebro_lab.tables.slip_source import DISCS
 
 _READS: Final = {
     RIG: "calibrate-slip reads", LEGS: "predict and import --legs read",
@@ -32,13 +36,17 @@ _CONSTANTS: Final = """
 [{at}constants]  # numbers in SI, or texts with a unit
 # radius_leg = "35 mm"    # needed for slip from the disc speeds
 # radius_ground = "120 mm"
+{load}normal_force = "{doubt}"  # NEEDED without a column of it: the load of all rows, as "6.6 N"
 """
 _RUNS: Final = """
 [{at}runs]  # what separates runs, one of these; default: a column 'run', else files
 # by = ["SET_POINT"]  # columns that change from run to run; needed where time restarts in the file
 # gap = "1 s"         # a pause longer than this starts a run
-# each_row = true     # every row is the mean of a trial
+{trials}  # true if every row is the mean of a trial, false for a recording
+# leave_out = [12]    # numbers of runs that are not read, of rows where each is one
 """
+_MOST_TRIALS: Final = 1000
+"""Rows above which a table is no list of means."""
 _ROWS: Final = """
 [{at}rows]  # only rows that meet all of these are read; names with < > = ! stand in backticks
 # keep = ["{column} > 0"]
@@ -95,7 +103,11 @@ def render_columns(
     text += "".join(_column(table, name, kind, guesses, at) for name in UNITS[kind])
     if kind == RIG:
         column = _quoted(f"`{next(iter(table.columns))}`")[1:-1]
-        text += _CONSTANTS.format(at=at) + _RUNS.format(at=at)
+        load = "# " * ("normal_force" in guesses)
+        unclear = len(table) <= _MOST_TRIALS and not {"t", "run"} & guesses.keys()
+        text += _CONSTANTS.format(at=at, load=load, doubt=DOUBT)
+        trials = f'each_row = "{DOUBT}"' if unclear else "# each_row = true   "
+        text += _RUNS.format(at=at, trials=trials)
         text += _ROWS.format(at=at, column=column) + _LOAD_CELL.format(at=at)
     listed = "".join(
         f"#   {_quoted(name)}: {_summary(table, name)}{f', in {unit}' if unit else ''}\n"
@@ -137,9 +149,12 @@ def _slip_lines(lines: list[str], guesses: Mapping[str, ColumnGuess]) -> list[st
 
     All lines become comments where both disc speeds are there, from which slip is computed.
     """
+    is_mean = re.fullmatch(MEAN_SLIP, split_header(guesses["slip_ratio"].name)[0])
+    meant = SlipDefinition.MEAN if is_mean else ""
     if "slip_definition" not in guesses:
-        lines = [*lines, f'definition = "{DOUBT}"  # NEEDED: material, travel or larger']
-    if {"omega_leg", "omega_ground"} <= guesses.keys():
+        names = ", ".join(SlipDefinition)
+        lines = [*lines, f'definition = "{meant}{DOUBT}"  # NEEDED: one of {names}']
+    if all({f"omega_{disc}", f"speed_{disc}"} & guesses.keys() for disc in DISCS):
         note = "# Slip comes from the disc speeds; to use this column, uncomment:"
         return [note, *(f"# {line}" for line in lines)]
     return lines

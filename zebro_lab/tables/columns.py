@@ -16,7 +16,7 @@ from model.slip.definition import SlipDefinition
 from zebro_lab.files.errors import DataError, UnitError
 from zebro_lab.files.units import counts_turns, factor_to_si, is_unit_text, may_be_gradian
 from zebro_lab.tables.date_cells import is_date_unit, seconds_of_dates
-from zebro_lab.tables.header_units import unit_in_header
+from zebro_lab.tables.header_units import scaled, unit_in_header
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.row_conditions import RowCondition
 
@@ -147,7 +147,8 @@ class MappedColumn:
         unit = table.unit_of(self.name, si_unit)
         if unit is None:
             return self
-        advice = f'state unit = "{si_unit}" or what it is in {COLUMNS_FILE}, {scaled(si_unit)}'
+        other = scaled(si_unit, unit)
+        advice = f'state unit = "{si_unit}" or what it is in {COLUMNS_FILE}, {other}'
         if unit == unit_in_header(self.name) and not is_unit_text(unit):
             problem = f"'{unit}' in the header is no unit that is known; {advice}"
             raise table.fault(problem, self.name)
@@ -160,12 +161,6 @@ class MappedColumn:
             problem = f"the file states its unit: {error}; {advice}"
             raise table.fault(problem, self.name) from error
         return replace(self, unit=unit, factor=math.copysign(factor, self.factor))
-
-
-def scaled(si_unit: str) -> str:
-    """Return how to state a unit that is not known, as a multiple of the SI unit, for messages."""
-    unit = "" if si_unit == "dimensionless" else f" {si_unit}"
-    return f'or scale = NUMBER, unit = "{si_unit}" if 1 in the file is NUMBER{unit}'
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,10 @@ from pathlib import Path
 from zebro_lab.files.errors import NotFound, UnitError
 from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.files.units import factor_to_si
-from zebro_lab.tables.columns import RIG, TRACK, Columns, MappedColumn, scaled
+from zebro_lab.tables.columns import RIG, TRACK, Columns, MappedColumn
 from zebro_lab.tables.columns_sections import read_nearest, read_section, read_source
 from zebro_lab.tables.date_cells import is_date_unit
+from zebro_lab.tables.header_units import scaled
 from zebro_lab.tables.rig_columns import (
     RIG_UNITS,
     RigColumns,
@@ -23,7 +24,7 @@ from zebro_lab.tables.rig_columns import (
 )
 from zebro_lab.tables.row_conditions import read_row_conditions
 
-_CONSTANTS = {"radius_leg": "m", "radius_ground": "m"}
+_CONSTANTS = {"radius_leg": "m", "radius_ground": "m", "normal_force": "N"}
 LARGEST_LOAD_CELL_ERROR = {"dimensionless": 0.2}
 """Largest relative error or crosstalk of a load cell that a number without a unit can state."""
 _LOAD_CELL = {
@@ -204,7 +205,7 @@ def _unit(table: SettingsTable, si_unit: str) -> tuple[str, float]:
     try:
         return unit, factor_to_si(unit, si_unit)
     except UnitError as error:
-        raise table.fault(f"{error}, {scaled(si_unit)}", "unit") from error
+        raise table.fault(f"{error}, {scaled(si_unit, unit)}", "unit") from error
 
 
 def _scale(table: SettingsTable, unit: str) -> float:
@@ -240,10 +241,14 @@ def _runs(table: SettingsTable) -> RunRule:
     given = [key for key in ("by", "gap", "each_row") if key in runs]
     if len(given) > 1:
         raise table.fault(f"found {' and '.join(given)}; keep only one of them", "runs")
+    trials = runs.value("each_row", False)
+    if trials not in (True, False, "true"):  # a text where the "?" of a guess was deleted
+        raise runs.fault(f"found {trials!r}; expected true or false", "each_row")
     return RunRule(
         by=runs.texts("by"),
         gap=runs.quantity("gap", "s", above=0.0) if "gap" in runs else None,
-        each_row=runs.flag("each_row", False),
+        each_row=bool(trials),
+        leave_out=runs.wholes("leave_out", least=1, most=10**9) if "leave_out" in runs else (),
     )
 
 

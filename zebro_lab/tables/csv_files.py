@@ -5,16 +5,17 @@ import codecs
 import io
 import re
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Final, TextIO
 
 import pandas as pd
 
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing, read_unpacked
-from zebro_lab.tables.cells import NO_VALUE, kind_of
+from zebro_lab.tables.cells import NO_VALUE
 from zebro_lab.tables.raw_table import RawTable, differing_headers
+from zebro_lab.tables.table_blocks import Block, find_blocks, with_blocks
 from zebro_lab.tables.text_layout import (
     BLANKS,
     SEPARATORS,
@@ -45,7 +46,7 @@ def read_csv_file(path: Path, *, bare: bool = False) -> RawTable:
     comments above the header, and empty lines, are skipped; a row of units below it, or units in
     brackets, go into `units`. Repeated headers are numbered and listed in `repeated`. Missing cells
     at a row's end are empty; a header alone gives a table without rows. Decimal commas are
-    understood; thousands separators are not.
+    understood; thousands separators are not. Headings between rows begin runs, in a column `run`.
 
     Args:
         path: The file.
@@ -60,7 +61,8 @@ def read_csv_file(path: Path, *, bare: bool = False) -> RawTable:
     data = read_unpacked(path)
     encoding = _encoding(path, data)
     layout = _layout(path, _head(path, data[:_HEAD_BYTES], encoding), bare=bare)
-    table = _table(path, layout, _frame(path, layout, data, encoding), encoding)
+    frame, blocks = _frame(path, layout, data, encoding, bare=bare)
+    table = _table(path, layout, frame, blocks, encoding)
     if layout.separator == BLANKS:
         _require_full_rows(table)
     return table
@@ -155,14 +157,43 @@ def _layout(path: Path, lines: list[Line], *, bare: bool) -> TextLayout:
     return layout
 
 
-def _frame(path: Path, layout: TextLayout, data: bytes, encoding: str) -> pd.DataFrame:
+def _frame(
+    path: Path, layout: TextLayout, data: bytes, encoding: str, *, bare: bool
+) -> tuple[pd.DataFrame, list[Block]]:
+    """Read all rows below the header; return them, and their blocks if these were looked for.
+
+    They are unless the table may be bare, or holds numbers alone and begins with a column of them.
+    Raises `DataError` if the rows cannot be read.
+    """
+
+    def lines() -> TextIO:
+        """Return the text of the file, from its start."""
+        return io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline="")
+
+    frame = None
+    try:
+        frame = _rows(path, layout, lines())
+        plain = all(dtype.kind in "ifub" for dtype in frame.dtypes)
+        if bare or (plain and not frame.iloc[:, 0].isna().all()):
+            return frame, []
+    except DataError:
+        if bare:
+            raise
+    blocks = find_blocks(path, lines(), layout)
+    if frame is None or len(blocks) > 1:  # without a heading the same error again
+        headings = {number for block in blocks for number in block.lines}
+        kept = (line for number, line in enumerate(lines(), start=1) if number not in headings)
+        frame = _rows(path, layout, io.StringIO("".join(kept), newline=""))
+    return frame, blocks
+
+
+def _rows(path: Path, layout: TextLayout, text: TextIO) -> pd.DataFrame:
     """Read all rows below the header with pandas, under the names of the layout.
 
     Where rows have one cell more than the header, the last column is named `_SURPLUS`. Raises
     `DataError` if pandas cannot read the rows, as where one has still more cells.
     """
     names = [*layout.header.names, *[_SURPLUS] * (layout.width > len(layout.header.names))]
-    text = io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline="")
     for _ in range(layout.last_line):  # here, since pandas looks for quotes in skipped lines
         text.readline()
     with (
@@ -186,11 +217,15 @@ def _frame(path: Path, layout: TextLayout, data: bytes, encoding: str) -> pd.Dat
             raise DataError("has a header but no rows", file=path) from error
 
 
-def _table(path: Path, layout: TextLayout, frame: pd.DataFrame, encoding: str) -> RawTable:
-    """Return the cells as a raw table, with notes on separator, encoding and header."""
+def _table(
+    path: Path, layout: TextLayout, frame: pd.DataFrame, blocks: list[Block], encoding: str
+) -> RawTable:
+    """Return the cells as a raw table, with notes on separator, encoding, header and runs."""
     columns = _without_empty_ends(path, frame, layout)
+    columns, runs = with_blocks(columns, blocks, layout)
     odd = layout.separator != ","
     said = [f"cells are separated by {SEPARATORS[layout.separator]}"] * odd
+    said += runs
     said += ["read as Windows-1252, since it is not UTF-8"] * (encoding == WINDOWS)
     return RawTable(
         path,
@@ -203,6 +238,7 @@ def _table(path: Path, layout: TextLayout, frame: pd.DataFrame, encoding: str) -
         units={name: unit for name, unit in layout.header.units.items() if name in columns},
         separator=layout.separator,
         commented=layout.commented,
+        headings=frozenset(number for block in blocks for number in block.lines),
     )
 
 
@@ -274,16 +310,6 @@ def _is_text(head: bytes, encoding: str) -> bool:
     return not any(ord(c) < 32 and c not in "\t\r\n\f" for c in text)
 
 
-_FOOTER = re.compile(
-    r"(?:mean|average|avg|std|sd|stdev|sum|total|minimum|min|maximum|max|median|count|end|eof|"
-    r"mittel\w*|summe|stabw|standardabweichung|anzahl|ende)\b.*",
-    re.IGNORECASE,
-)
-_NO_STATISTIC: Final = re.compile(r"(?:count|end|eof|anzahl|ende)\b.*", re.IGNORECASE)
-"""Words that a column of remarks may well end with."""
-_FOOTER_ROWS: Final = 10  # rows at the end in which a footer is looked for
-
-
 def _require_full_rows(table: RawTable) -> None:
     """Check that each row has as many cells as the header, where blanks separate the cells.
 
@@ -301,46 +327,3 @@ def _require_full_rows(table: RawTable) -> None:
             advice = "write nan where a value is missing, or separate cells by tabs or commas"
             problem = uneven_row(found, len(table.columns), advice)
             raise DataError(problem, file=table.path, row=row, line=line)
-
-
-def require_no_footer(table: RawTable) -> None:
-    """Check that no column ends with a word such as "Mean": such a row is no sample.
-
-    The word is an error in the last `_FOOTER_ROWS` rows of a column whose first cell is a number or
-    date. In a column of texts it is one only if all rows from it on hold such words, each once, and
-    no row above does; else it may be a remark.
-
-    Raises:
-        DataError: One does.
-    """
-    for name, cells in table.columns.items():
-        if cells.dtype.kind in "ifbMm" or len(cells) < 2 or name in table.unreadable:
-            continue
-        first = max(1, len(cells) - _FOOTER_ROWS)
-        last = ["" if cell is None else str(cell).strip() for cell in cells.iloc[first:]]
-        found = [i for i, text in enumerate(last) if _FOOTER.fullmatch(text)]
-        known = cells.iloc[: first + found[0]].dropna() if found else cells.iloc[:0]
-        if not found or not (_are_values(known) or _are_statistics(last[found[0] :], known)):
-            continue
-        below = "numbers" if _are_values(known) else "the rows"
-        problem = f"'{last[found[0]]}' stands below {below}; delete the lines below the table"
-        raise table.fault(problem, name, first + found[0])
-
-
-def _are_values(cells: pd.Series) -> bool:
-    """Return whether there are cells, and the first is a number or date."""
-    return len(cells) > 0 and kind_of(str(cells.iloc[0])) == "value"
-
-
-def _are_statistics(last: Sequence[str], above: pd.Series) -> bool:
-    """Return whether the last texts all name statistics, each once, and none above does.
-
-    Args:
-        last: The last texts of a column.
-        above: The cells above them.
-    """
-    return (
-        len(set(last)) == len(last)
-        and all(_FOOTER.fullmatch(text) and not _NO_STATISTIC.fullmatch(text) for text in last)
-        and not any(_FOOTER.fullmatch(text.strip()) for text in set(map(str, above)))
-    )

@@ -5,6 +5,7 @@ Works on rows of texts, whatever file they come from. Above the data there may b
 more rows of names, and a row of units or symbols.
 """
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,6 +14,8 @@ from zebro_lab.tables.cells import bare_unit, is_units_row, kind_of
 from zebro_lab.tables.header_units import unit_in_header
 
 Row = Sequence[str]
+_LABEL = re.compile(r"(channel|signal)[ _]?names?|kanalname|units?|einheit(en)?")
+"""Words that begin a row of names or of units, above columns of numbers."""
 
 
 @dataclass(frozen=True)
@@ -84,16 +87,18 @@ def data_rows(rows: Sequence[Row]) -> DataRows | None:
 def find_header(rows: Sequence[Row], data: DataRows) -> Header:
     """Find names and units in the rows above the data.
 
-    Rows that `_is_full` and that stand directly above the data belong to the header. The lowest of
+    Rows that `is_full` and that stand directly above the data belong to the header. The lowest of
     them that holds units is the row of units, unless it is the top one; the row above it, else the
     lowest, holds the names. Units may also stand above the names.
 
     Raises:
         NoHeader: There is no row of names, or two may be.
     """
+    labelled = kind_of(next(iter(rows[data.first]), "")) == "text"
     above = [row for row in rows[: data.first] if any(cell.strip() for cell in row)]
+    above = above if labelled else list(map(_without_labels, above))
     block: list[Row] = []
-    while above and _is_full(above[-1], data.width):
+    while above and is_full(above[-1], data.width):
         block.insert(0, above.pop())
     if not block:
         raise NoHeader("has no header" if not above else "has no header of that width")
@@ -117,6 +122,18 @@ def find_header(rows: Sequence[Row], data: DataRows) -> Header:
     notes += ["the row of units is used"] * (units is not None)
     notes += ["the row between units and numbers is not read"] * bool(symbols)
     return made_header(filled, data.first, units_row=units, notes=tuple(notes))
+
+
+def _without_labels(row: Row) -> Row:
+    """Return a row of names or units without what says so, as exports of National Instruments do.
+
+    Each cell "Channel name" stands above a column of times.
+    """
+    label = row[0].strip().casefold()
+    if not _LABEL.fullmatch(label):
+        return row
+    meant = "" if label.startswith(("unit", "einheit")) else "Time"
+    return [meant if cell.strip().casefold() == label else cell for cell in row]
 
 
 def made_header(
@@ -197,7 +214,7 @@ def _width(row: Row) -> int:
     return max((i for i, cell in enumerate(row, start=1) if cell.strip()), default=0)
 
 
-def _is_full(row: Row, width: int) -> bool:
+def is_full(row: Row, width: int) -> bool:
     """Return whether a row above the data may be of names or units, unlike a title, which is short.
 
     It has at least as many cells as the data; the last that is filled is the data's last but one or

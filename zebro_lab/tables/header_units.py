@@ -9,7 +9,6 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from zebro_lab.files.errors import DataError
 from zebro_lab.files.units import is_unit_of, is_unit_text
 
 _BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)|\{([^{}]*)\}|<([^<>]*)>")
@@ -32,9 +31,7 @@ _SPELLED_UNIT: Final = re.compile(
     r"hundredth|thousandth",
     re.IGNORECASE,
 )
-_LVM_END: Final = "***End_of_Header***"
-_LVM_HEADERS: Final = 2  # of the file and of its segment
-_LVM_TIME: Final = ("x_value", "x value")
+LVM_TIME: Final = ("x_value", "x value")
 _MOTIVE: Final = "Format Version"
 _LONG_WORD: Final = 5
 """Letters from which on a word in round brackets is a name, if it spells no unit."""
@@ -54,8 +51,9 @@ _SUFFIXES: Final = {
 _ALSO_NAMES: Final = frozenset({
     "s", "n", "m", "in", "ft", "min", "rad", "rads", "degs", "mg", "un", "mn", "cn", "dan", "us",
 })  # fmt: skip
-"""Endings that count only where the unit fits: `f_n` is normal, `n_min` least, `Drehzahl Rad` of a
-wheel."""
+"""Endings that count only where the unit fits: `n_min` is least, `Drehzahl Rad` of a wheel."""
+_SUBSCRIPTED: Final = re.compile(r"(?:.*_)?(?:f|force|kraft)_[ng]")
+"""Headers that end in a subscript, which is no unit: `F_N` is normal, perhaps in pounds."""
 
 
 def unit_in_header(header: str) -> str | None:
@@ -90,9 +88,10 @@ def suffix_in_header(header: str) -> tuple[str, str] | None:
     """
     text = _BRACKETS.sub(" ", header).replace("μ", "µ")
     words = [word for word in re.split(r"[^0-9A-Za-zµ%°²]+", text) if word]
+    plain = "_".join(words).casefold()
     for count in (3, 2, 1):
         ending = "_".join(words[-count:]).casefold().replace("μ", "µ")  # casefold makes it Greek
-        if len(words) > count and ending in _SUFFIXES:
+        if len(words) > count and ending in _SUFFIXES and not _SUBSCRIPTED.fullmatch(plain):
             return ending, "MN" if words[-1] == "MN" else _SUFFIXES[ending]
     return None
 
@@ -108,6 +107,8 @@ def suffix_unit(header: str, si_unit: str) -> str | None:
 
     >>> suffix_unit("az_g", "m/s^2"), suffix_unit("omega_g", "rad/s"), suffix_unit("FZ_kg", "N")
     ('g', None, 'kg')
+    >>> suffix_unit("F_N", "N"), suffix_unit("FZ_N", "N")
+    (None, 'N')
     """
     found = suffix_in_header(header)
     if found is None or found[1] == si_unit:
@@ -139,24 +140,6 @@ def _is_name(text: str, *, in_round: bool) -> bool:
     )
 
 
-def after_lvm_header(lines: Sequence[tuple[int, str]]) -> Sequence[tuple[int, str]]:
-    """Return the lines below the last header of a LabVIEW measurement file; others as they are.
-
-    Args:
-        lines: Number and text of each line.
-
-    Raises:
-        DataError: There is more than one segment, each with a header of its own.
-    """
-    ends = [i for i, (_, line) in enumerate(lines) if line.strip().startswith(_LVM_END)]
-    if len(ends) > _LVM_HEADERS:
-        raise DataError(
-            "has several segments of measurement, each with a header; that of the second ends in "
-            f"line {lines[ends[_LVM_HEADERS]][0]}: make a file of each"
-        )
-    return lines[ends[-1] + 1 :] if ends else lines
-
-
 def stated_units(settings: Sequence[Sequence[str]], names: Sequence[str]) -> Mapping[str, str]:
     """Return the units that settings above a header state, by header.
 
@@ -178,8 +161,21 @@ def stated_units(settings: Sequence[Sequence[str]], names: Sequence[str]) -> Map
         return {name: unit for name in names if "Position" in name.split()}
     if "Y_Unit_Label" not in lines:
         return {}
-    times = [name for name in names if name.casefold().startswith(_LVM_TIME)]
+    times = [name for name in names if name.casefold().startswith(LVM_TIME)]
     labels = {name: unit for name, unit in zip(names[1:], lines["Y_Unit_Label"], strict=False)
               if unit and name not in times}  # fmt: skip
     in_time = lines.get("X_Dimension", [""])[0].casefold() == "time"
     return {**labels, **(dict.fromkeys(times, "s") if in_time else {})}
+
+
+def scaled(si_unit: str, unit: str) -> str:
+    """Return what to try if a unit is not known or of another quantity, for messages.
+
+    Args:
+        si_unit: SI unit of the canonical column.
+        unit: The unit.
+    """
+    if si_unit == "rad/s" and is_unit_of(unit, "m/s"):
+        return "or map the speed of a surface as speed_leg or speed_ground, not omega"
+    unit = "" if si_unit == "dimensionless" else f" {si_unit}"
+    return f'or scale = NUMBER, unit = "{si_unit}" if 1 in the file is NUMBER{unit}'

@@ -56,6 +56,7 @@ class RawTable:
         kept: Which rows of the file the columns hold, counted from 0, shape (n,); None for all.
         separator: Separator of cells in a text file, as of `pandas.read_csv`; None for other files.
         commented: Whether the header of a text file is a comment, or made of numbers of columns.
+        headings: Numbers of the lines of a text file that stand between its rows.
     """
 
     path: Path
@@ -72,6 +73,7 @@ class RawTable:
     kept: NDArray[np.intp] | None = None
     separator: str | None = None
     commented: bool = False
+    headings: frozenset[int] = frozenset()
 
     def __len__(self) -> int:
         """Return the number of data rows; 0 for a table without columns."""
@@ -228,12 +230,15 @@ class RawTable:
     def text_rows(self) -> Iterator[tuple[int, int, str]]:
         """Yield data row, line and text of each line of a text file below its header.
 
-        Rows and lines count from 1; blank lines are left out. The file is read again.
+        Rows and lines count from 1; blank lines and headings are left out. The file is read again.
         """
         file = io.BytesIO(read_unpacked(self.path))
         lines = enumerate(io.TextIOWrapper(file, encoding=self.encoding, errors="replace"), start=1)
         header = self.header_line or 0
-        filled = ((line, text) for line, text in lines if line > header and text.strip())
+        filled = (
+            (line, text) for line, text in lines
+            if line > header and text.strip() and line not in self.headings
+        )  # fmt: skip
         for row, (line, text) in enumerate(filled, start=1):
             yield row, line, text
 
@@ -248,12 +253,6 @@ class RawTable:
     def _not_a_number(self, name: str, index: int) -> DataError:
         """Return, without raising, an error that a cell is no number, with advice by its form."""
         text = str(self.column(name).iloc[index])
-        if index and self._is_line_of_words(index):
-            return self.fault(
-                f"'{text}' is not a number, but in a line of words between the numbers: delete the "
-                "line, or, if another table or recording begins there, make a file of each",
-                name, index, value=text,
-            )  # fmt: skip
         if may_be_thousands(text):
             return self.fault(
                 f"'{text}' has a decimal sign or a thousands separator; write all numbers without "
@@ -269,12 +268,6 @@ class RawTable:
             units = "if the row holds units, delete it and give them in columns.toml"
             advice = "correct or delete the row" if index else units
         return self.fault(f"'{text}' is not a number; {advice}", name, index, value=text)
-
-    def _is_line_of_words(self, index: int) -> bool:
-        """Return whether a row, counted from 0, holds words alone, or one word and empty cells."""
-        kinds = [kind_of(_cell_text(cells.iloc[index])) for cells in self.columns.values()]
-        words = kinds.count("text")
-        return len(kinds) > 1 and "value" not in kinds and words in (1, len(kinds))
 
 
 def is_measured(values: Array) -> NDArray[np.bool_]:
@@ -305,11 +298,6 @@ def differing_headers(
             if re.fullmatch(rf"{re.escape(name)} \(\d+\)", copy)
         )
     )  # fmt: skip
-
-
-def _cell_text(cell: Any) -> str:
-    """Return a cell as text, "" for an empty one (None, NaN or NaT)."""
-    return cell if isinstance(cell, str) else "" if cell is None or cell != cell else str(cell)
 
 
 def _as_numbers(cells: pd.Series) -> Array:

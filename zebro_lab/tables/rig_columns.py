@@ -39,6 +39,8 @@ CANONICAL: Mapping[str, CanonicalColumn] = MappingProxyType({
     "t": CanonicalColumn("s", "time, increasing within a run"),
     "omega_leg": CanonicalColumn("rad/s", "angular speed of the leg disc"),
     "omega_ground": CanonicalColumn("rad/s", "angular speed of the ground disc"),
+    "speed_leg": CanonicalColumn("m/s", "speed of the leg's surface, in place of omega_leg"),
+    "speed_ground": CanonicalColumn("m/s", "speed of the ground's surface"),
     "angle_leg": CanonicalColumn("rad", "angle of the leg disc, of one zero; for its run-out"),
     "angle_ground": CanonicalColumn("rad", "angle of the ground disc, of one zero"),
     "radius_leg": CanonicalColumn("m", "radius of the leg disc at the contact"),
@@ -46,16 +48,19 @@ CANONICAL: Mapping[str, CanonicalColumn] = MappingProxyType({
     "slip_ratio": CanonicalColumn("dimensionless", "slip ratio, with its definition"),
     "normal_force": CanonicalColumn("N", "normal force, positive when pressed together"),
     "traction_force": CanonicalColumn("N", "traction force, positive when driving"),
+    "traction_coefficient": CanonicalColumn("dimensionless", "traction force over normal force"),
+    "traction_force_sd": CanonicalColumn("N", "standard deviation of a row's traction force"),
+    "traction_coefficient_sd": CanonicalColumn("dimensionless", "standard deviation of that"),
     "lateral_force": CanonicalColumn("N", "force across the discs, if the cell measures it"),
     "run": CanonicalColumn(None, "name or number of the run"),
-    "slip_definition": CanonicalColumn(None, "material, travel or larger; one in each file"),
+    "slip_definition": CanonicalColumn(None, "material, travel, larger or mean; one in each file"),
 })  # fmt: skip
 RIG_UNITS: Mapping[str, str | None] = {name: column.unit for name, column in CANONICAL.items()}
 
 
 @dataclass(frozen=True)
 class RunRule:
-    """Rule that separates the rows of one file into runs; at most one attribute is given.
+    """Rule that separates the rows of one file into runs; at most one of the first three is given.
 
     Without a rule, a change in the `run` column starts a run; without that, the file is one run.
 
@@ -63,11 +68,13 @@ class RunRule:
         by: Columns, by their headers in the file; a change of value in one starts a new run.
         gap: Interval between samples beyond which a new run starts [s]; None if not given.
         each_row: Whether every row is the mean of one trial, and therefore a run.
+        leave_out: Numbers of runs of each file that are left out, counted from 1.
     """
 
     by: tuple[str, ...] = ()
     gap: float | None = None
     each_row: bool = False
+    leave_out: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -111,7 +118,8 @@ class RigColumns(Columns):
 
     Attributes:
         units: SI unit of each of the columns `CANONICAL`.
-        constants: Given radii of the discs, `radius_leg` and `radius_ground` [m], by name.
+        constants: What is the same in all rows, by name: the radii of the discs, `radius_leg` and
+            `radius_ground` [m], and `normal_force` [N]; only those given.
         runs: Rule that separates rows into runs.
         load_cell: Given standard deviations from the load cell's certificate by name, SI:
             `zero_stability`, `gain_sd`, `bias_sd`, `crosstalk_sd`.
@@ -131,7 +139,7 @@ def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefini
     """Parse the name of a slip definition.
 
     Args:
-        text: Name of the definition: material, travel or larger.
+        text: Name of the definition.
         file: File that it was read from, for the error message.
         key: Key or column that it was read from, for the error message.
 

@@ -94,16 +94,17 @@ class RigTable:
         return {name: float(np.median(self.constant_or_column(name))) for name in given}
 
     def constant_or_column(self, name: str) -> float | Array:
-        """Return a radius [m]: one number from `[constants]`, or a column of shape (n,).
+        """Return a radius [m] or the normal force [N]: a number from `[constants]`, or a column.
 
         Raises:
-            DataError: The radius is missing, given as both, or not a positive finite number.
+            DataError: It is missing, given as both, or not a positive finite number.
         """
         constant, source = self.columns.constants.get(name), self.source_of(name)
+        unit = CANONICAL[name].unit
         if constant is not None and source is not None:
             raise self.raw.fault(
-                f"the radius is given twice, in this column and as [constants] {name} = "
-                f"{constant:g} m in {self.columns.stated_in}; delete one of them",
+                f"is given twice, in this column and as [constants] {name} = {constant:g} {unit} "
+                f"in {self.columns.stated_in}; delete one of them",
                 source.name,
             )
         if constant is None:
@@ -115,14 +116,20 @@ class RigTable:
                     name,
                 )
             values = self.si(name)
-            self.require(name, values > 0, lambda v: f"the radius is {v}; expected more than 0 m")
+            self.require(name, values > 0, lambda v: f"is {v}; expected more than 0 {unit}")
             return values
         if constant <= 0:
             raise DataError(
-                f"the radius in [constants] is {constant:g} m; expected more than 0 m",
-                file=self.columns.file or self.raw.path, column=name, value=constant, unit="m",
+                f"{name} in [constants] is {constant:g} {unit}; expected more than 0 {unit}",
+                file=self.columns.file or self.raw.path, column=name, value=constant, unit=unit,
             )  # fmt: skip
         return constant
+
+    @property
+    def traction(self) -> str:
+        """Canonical column that gives the traction: the force, or where it lacks a coefficient."""
+        names = ("traction_force", "traction_coefficient")
+        return next((name for name in names if self.source_of(name)), names[0])
 
     def require(self, name: str, good: NDArray[np.bool_], problem: Callable[[str], str]) -> None:
         """Check a condition on a column; the error names the first row that fails it.
@@ -151,9 +158,12 @@ def normal_force(table: RigTable) -> Array:
     """Return the normal force, positive everywhere, shape (n,) [N].
 
     Raises:
-        DataError: The column is missing, or a row's normal force is not finite or not positive; the
-            message proposes the other sign if more than 90 % are negative.
+        DataError: The column is missing, there is one beside a constant, or a row's normal force is
+            not finite or not positive; the message proposes the other sign if more than 90 % are
+            negative.
     """
+    if "normal_force" in table.columns.constants:
+        return np.full(len(table.rows), table.constant_or_column("normal_force"))
     force = table.si("normal_force")
     mostly_negative = np.mean(force < 0) > 0.9
     advice = (
@@ -168,3 +178,24 @@ def normal_force(table: RigTable) -> Array:
         lambda value: f"the normal force is {value}; expected more than 0 when pressed; {advice}",
     )
     return force
+
+
+def traction(table: RigTable, pressed: Array) -> tuple[Array, Array | None]:
+    """Return the traction force and its standard deviation, None without, each of shape (n,) [N].
+
+    Args:
+        table: The table, with a force, or with a coefficient, which the normal force multiplies.
+        pressed: Normal force of its rows, shape (n,) [N].
+
+    Raises:
+        DataError: There is neither column, a cell is not a finite number, or a standard deviation
+            is not above 0.
+    """
+    name, of_it = table.traction, f"{table.traction}_sd"
+    scale = 1.0 if name == "traction_force" else pressed
+    if table.source_of(of_it) is None:
+        return scale * table.si(name), None
+    sd = table.si(of_it)
+    advice = f"expected more than 0: correct it, or delete [columns.{of_it}]"
+    table.require(of_it, sd > 0, lambda value: f"the standard deviation is {value}; {advice}")
+    return scale * table.si(name), scale * sd

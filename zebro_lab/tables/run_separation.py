@@ -2,13 +2,14 @@
 """Assign the rows of a table to runs, and check their times."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
+from zebro_lab.files.errors import DataError
 from zebro_lab.tables.header_rows import unique_names
 from zebro_lab.tables.rig_table import RigTable
 
@@ -53,7 +54,8 @@ def separate_runs(table: RigTable, label: str) -> Runs:
     number = np.cumsum(starts)[table.rows]
     kept, index = np.unique(number, return_inverse=True)
     first = table.rows[np.searchsorted(number, kept)]
-    return Runs(index, run_names([run_title(table, row, by) for row in first], label, rule), rule)
+    titles = [run_title(table, row, by) for row in first]
+    return Runs(index, run_names(titles, label, rule, (1 + kept).tolist()), rule)
 
 
 def run_starts(table: RigTable) -> tuple[NDArray[np.bool_], tuple[str, ...], str]:
@@ -85,7 +87,9 @@ def run_title(table: RigTable, row: int, by: Sequence[str]) -> str:
     return " ".join(f"{name}={_shown(cell)}" for name, cell in cells)
 
 
-def run_names(titles: Sequence[str], label: str, rule: str) -> tuple[str, ...]:
+def run_names(
+    titles: Sequence[str], label: str, rule: str, numbers: Sequence[int]
+) -> tuple[str, ...]:
     """Return the name of each run of a table: its title, or its number if no run has a title.
 
     By the rule `ONE_RUN` the name is the label alone. Titles that repeat are numbered.
@@ -94,31 +98,53 @@ def run_names(titles: Sequence[str], label: str, rule: str) -> tuple[str, ...]:
         titles: Title of each run by `run_title`.
         label: Name of the table; prefix of every name.
         rule: The rule in words.
+        numbers: Number of each run in its table, counted from 1.
     """
     if rule == ONE_RUN:
         return (label,) * len(titles)
     if not any(titles):
-        return tuple(f"{label} run {k}" for k in range(1, len(titles) + 1))
+        return tuple(f"{label} run {k}" for k in numbers)
     return tuple(unique_names([f"{label} {title}" for title in titles]))
 
 
-def run_times(table: RigTable, runs: Runs) -> Array | None:
-    """Return the time of every kept row, and check that it increases within each run.
+def without_left_out(table: RigTable) -> tuple[RigTable, tuple[str, ...]]:
+    """Return a table without the runs that `[runs] leave_out` names, and a note on them.
+
+    Raises:
+        DataError: The table has no run of that number, or no other one; or as `separate_runs`.
+    """
+    rule = table.columns.runs
+    if not rule.leave_out:
+        return table, ()
+    number = 1 + (np.arange(len(table.raw)) if rule.each_row else np.cumsum(run_starts(table)[0]))
+    rows = table.rows[~np.isin(number[table.rows], rule.leave_out)]
+    named = ", ".join(map(str, rule.leave_out))
+    what = "rows" if rule.each_row else "runs"
+    if max(rule.leave_out) > number[-1] or not len(rows):
+        problem = f"[runs] leave_out in {table.columns.stated_in} names {what} {named}"
+        raise DataError(f"{problem}; expected some of 1 to {number[-1]}", file=table.raw.path)
+    return replace(table, rows=rows), (f"{table.raw.path.name}: {what} {named} are left out",)
+
+
+def run_times(table: RigTable, runs: Runs) -> tuple[Array | None, tuple[str, ...]]:
+    """Return the time of every kept row, and check that it does not decrease within a run.
+
+    Times that repeat because they are rounded are replaced by the even spacing that this hides.
 
     Args:
         table: Rig table.
         runs: Run of each kept row.
 
     Returns:
-        Times, shape (n,) [s]; None if the table has no time column or every row is a trial.
+        Times, shape (n,) [s]; None if the table has no time column, every row is a trial, or times
+        repeat and are not those of even spacing. Then a note where times repeat.
 
     Raises:
-        DataError: Time repeats or decreases within a run, is not a finite number, or is mapped to
-            a header that the table lacks; or it is in no unit that is stated, and does not fit
-            seconds.
+        DataError: Time decreases within a run, is not a finite number, or is mapped to a header
+            that the table lacks; or it is in no unit that is stated, and does not fit seconds.
     """
     if table.columns.runs.each_row or table.source_of("t") is None:
-        return None
+        return None, ()
     time = table.si("t")
     step = np.diff(time, prepend=-np.inf)
     inside = np.diff(runs.index, prepend=-1) == 0
@@ -131,15 +157,38 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
         ~inside | (step >= 0),
         lambda value: f"time goes back to {value}; sort the rows by time, or {advice}",
     )
-    table.require(
-        "t",
-        ~inside | (step > 0),
-        lambda value: f"time {value} repeats within a run; delete the copy, or {advice}",
-    )
+    notes: tuple[str, ...] = ()
+    again = np.count_nonzero(inside & (step == 0))
+    if again:
+        time = _even_times(time, runs.index)
+        used = "they are not used" if time is None else "the even spacing that this hides is taken"
+        notes = (f"{table.raw.path.name}: {again} of {len(inside)} times repeat the one before, as "
+                 f"if rounded; {used}",)  # fmt: skip
+    if time is None:
+        return None, notes
+    step = np.diff(time, prepend=-np.inf)
     source = table.required("t")
     if not (table.raw.path.is_dir() or source.unit_stated or table.raw.unit_of(source.name, "s")):
         table.columns.require_usual_steps(table.raw, "t", step[inside])
-    return time
+    return time, notes
+
+
+def _even_times(time: Array, run: NDArray[np.intp]) -> Array | None:
+    """Return evenly spaced times, one interval in all runs, that rounding hides, shape (n,) [s].
+
+    None where the recorded ones are off by more than their resolution, the smallest step.
+
+    Args:
+        time: Times, not decreasing within a run, shape (n,) [s].
+        run: Run of each, non-decreasing, shape (n,).
+    """
+    step, inside = np.diff(time), np.diff(run) == 0
+    if not np.any(step[inside] > 0):
+        return None
+    even = np.cumsum(np.append(0.0, np.where(inside, step[inside].mean(), 0.0)))
+    even += (np.bincount(run, time - even) / np.bincount(run))[run]
+    resolution = step[inside & (step > 0)].min()
+    return even if np.abs(time - even).max() <= 1.1 * resolution else None
 
 
 def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:

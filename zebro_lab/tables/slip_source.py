@@ -6,14 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.arrays import Array
-from model.slip.definition import SlipDefinition, convert_slip, is_possible, slip_ratio
+from model.slip.definition import RANGES, SlipDefinition, convert_slip, is_possible, slip_ratio
+from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import MappedColumn
 from zebro_lab.tables.rig_columns import parse_definition
 from zebro_lab.tables.rig_table import RigTable
 
-_SPEEDS = ("omega_leg", "omega_ground")
-_RANGES = {"material": "1 or less", "travel": "-1 or more", "larger": "from -1 to 1"}
+DISCS = ("leg", "ground")
 _SLIP_NOISE = 0.1  # margin for noise beyond the limits of slip; values in percent exceed it by far
+_COMPARED = 0.9  # share of rows whose slip by the speeds is compared with the stated one
+_CONTRADICTS = 3.0  # ratio of the deviations from two definitions beyond which one is the other
+_LEAST_DIFFERENCE = 0.002  # of slip ratios, below which definitions are not told apart
+_AGREES = 0.2  # largest deviation from the right definition, over the spread of slip
 
 
 @dataclass(frozen=True)
@@ -23,7 +27,7 @@ class SlipColumn:
     Attributes:
         ratio: Slip ratio in `definition`, shape (n,) [-].
         definition: Slip definition of `ratio`.
-        column: Canonical column to name in error messages: `slip_ratio` or `omega_leg`.
+        column: Canonical column to name in error messages: `slip_ratio`, or the leg's speed.
         origin: Description of how the slip ratio was obtained, for a note.
     """
 
@@ -46,18 +50,35 @@ def slip(table: RigTable) -> SlipColumn:
         SettingsError: The column `slip_definition` has an unknown name.
     """
     given = table.source_of("slip_ratio")
-    speeds = all(table.source_of(name) for name in _SPEEDS)
+    names = [speed_column(table, disc) for disc in DISCS]
+    speeds = all(table.source_of(name) for name in names)
     definition = _given_definition(table) if given else None
     mapped = "slip_ratio" in table.columns.columns
     if given and (definition or mapped or not speeds):
         return _given_slip(table, given, definition, speeds=speeds)
     if speeds:
         return _slip_from_speeds(table, unused=given)
-    if any(table.source_of(name) for name in _SPEEDS):
-        for name in _SPEEDS:
+    if any(table.source_of(name) for name in names):
+        for name in names:
             table.required(name)
     what = "slip ratio with its definition, or of omega_leg and omega_ground with the radii,"
     raise table.columns.missing(table.raw, "slip_ratio", what=what)
+
+
+def speed_column(table: RigTable, disc: str) -> str:
+    """Return the canonical column of the speed of a disc, "leg" or "ground": surface or angular."""
+    return f"speed_{disc}" if table.source_of(f"speed_{disc}") else f"omega_{disc}"
+
+
+def surface_speed(table: RigTable, disc: str) -> Array:
+    """Return the speed of the surface of a disc, "leg" or "ground", at the contact, (n,) [m/s].
+
+    Raises:
+        DataError: A cell is not a finite number; or there is the angular speed without a radius.
+    """
+    name = speed_column(table, disc)
+    values = table.si(name)
+    return values if name[:5] == "speed" else values * table.constant_or_column(f"radius_{disc}")
 
 
 def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) -> SlipColumn:
@@ -80,7 +101,7 @@ def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) 
         column,
         possible,
         lambda _: (
-            f"the slip ratio {first:.4g} is impossible for '{source}' ({_RANGES[source]}); "
+            f"the slip ratio {first:.4g} is impossible for '{source}', outside {RANGES[source]}; "
             "check the definition, or leave such rows out"
         ),
     )
@@ -147,6 +168,8 @@ def _given_slip(
         )
     ratio = table.si("slip_ratio")
     _require_possible(table, ratio, definition)
+    if speeds:
+        _require_agreement(table, ratio, definition)
     unused = "; the columns of disc speeds are not used" if speeds else ""
     origin = f"as given in '{given.name}', definition {definition}{unused}"
     return SlipColumn(ratio, definition, "slip_ratio", origin)
@@ -163,31 +186,67 @@ def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition)
         is_possible(inner, definition),
         lambda value: (
             f"the slip ratio is {value}, impossible for the definition '{definition}' "
-            f"({_RANGES[definition]}); check in {table.columns.stated_in} definition, sign and "
-            'unit = "%"'
+            f"(range {RANGES[definition]}); check in {table.columns.stated_in} definition, sign "
+            'and unit = "%"'
         ),
     )
 
 
+def _require_agreement(table: RigTable, ratio: Array, definition: SlipDefinition) -> None:
+    """Raise `DataError` if by the speeds of the same rows a slip ratio has another definition.
+
+    Of each definition, slip by the speeds is compared with the given one, apart from a constant,
+    which a wrong ratio of the radii would cause, by `_COMPARED` of the rows. Speeds that cannot be
+    used are not compared.
+    """
+    try:
+        leg, ground = (surface_speed(table, disc) for disc in DISCS)
+    except DataError:
+        return
+    moving = (leg != 0) & (ground != 0)
+    if not moving.any():
+        return
+    off = {
+        each: _spread((ratio - slip_ratio(leg, ground, each))[moving]) for each in SlipDefinition
+    }
+    best = min(off, key=lambda each: off[each])
+    agrees = off[best] < _AGREES * _spread(ratio)
+    if agrees and off[definition] > max(_CONTRADICTS * off[best], _LEAST_DIFFERENCE):
+        raise table.raw.fault(
+            f"the slip ratio is stated as '{definition}', but differs by {off[definition]:.2g} "
+            f"from such slip by the speeds of the same rows, from '{best}' by {off[best]:.2g}; "
+            f'state definition = "{best}" in {table.columns.stated_in}, or map only the slip ratio '
+            "or only the speeds, if the others are of something else",
+            table.required("slip_ratio").name,
+        )
+
+
+def _spread(values: Array) -> float:
+    """Return within what distance of their median `_COMPARED` of some slip ratios are [-]."""
+    return float(np.quantile(np.abs(values - np.median(values)), _COMPARED))
+
+
 def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipColumn:
-    """Compute the `material` slip ratio from the rim speeds.
+    """Compute the `material` slip ratio from the speeds of the surfaces.
 
     Raises `DataError` where the leg disc stands still. `unused` is a slip ratio in the table that
     is ignored, for the note.
     """
-    speed_leg = table.si("omega_leg") * table.constant_or_column("radius_leg")
-    speed_ground = table.si("omega_ground") * table.constant_or_column("radius_ground")
-    ratio = slip_ratio(speed_leg, speed_ground, SlipDefinition.MATERIAL)
-    header = table.required("omega_leg").name
+    leg, ground = (surface_speed(table, disc) for disc in DISCS)
+    ratio = slip_ratio(leg, ground, SlipDefinition.MATERIAL)
+    column = speed_column(table, "leg")
+    header = table.required(column).name
     table.require(
-        "omega_leg",
+        column,
         np.isfinite(ratio),
         lambda value: (
             f"the leg disc stands still ({value}), so that slip is undefined; skip such rows with "
             f'[rows] keep = ["`{header}` > 0.1"] in {table.columns.stated_in}'
         ),
     )
-    origin = "computed from disc speeds and radii, definition material"
+    surface = all(speed_column(table, disc) == f"speed_{disc}" for disc in DISCS)
+    speeds = "surface speeds" if surface else "disc speeds and radii"
+    origin = f"computed from {speeds}, definition material"
     if unused:
         origin += f"; '{unused.name}' is not used, because its definition is not stated"
-    return SlipColumn(ratio, SlipDefinition.MATERIAL, "omega_leg", origin)
+    return SlipColumn(ratio, SlipDefinition.MATERIAL, column, origin)

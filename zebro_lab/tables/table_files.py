@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Read table files as raw tables: text of any layout, Parquet and Excel."""
+"""Read table files as raw tables: text of any layout, Parquet, MATLAB and Excel."""
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+import pandas as pd
+
 from zebro_lab.files.errors import DataError, NotFound
-from zebro_lab.tables.csv_files import read_csv_file, require_no_footer
+from zebro_lab.tables.cells import kind_of
+from zebro_lab.tables.csv_files import read_csv_file
 from zebro_lab.tables.excel_files import read_excel_file
+from zebro_lab.tables.mat_files import read_mat_file
 from zebro_lab.tables.raw_table import RawTable
 
 
@@ -31,6 +36,7 @@ READERS: Final[Mapping[str, Callable[[Path], RawTable]]] = {
     ".lvm": read_csv_file,
     ".txt": read_csv_file,
     ".parquet": _read_parquet,
+    ".mat": read_mat_file,
 }
 """Reader of each table format without sheets, by the suffix of its files, which may be gzipped."""
 _EXCEL: Final = ".xlsx"
@@ -38,7 +44,7 @@ _NAMED_ONLY: Final = ".txt"  # in folders of data mostly notes
 _UNPACK: Final = "unpack it, and name what was in it"
 _OTHERS: Final = {
     ".xls": "save it as .xlsx or CSV", ".xlsm": "save it as .xlsx or CSV",
-    ".ods": "save it as .xlsx or CSV", ".mat": "export its arrays as CSV or Parquet",
+    ".ods": "save it as .xlsx or CSV",
     ".tdms": "export it as CSV", ".c3d": "export it as CSV", ".h5": "export it as CSV or Parquet",
     ".tum": "it is a trajectory, which import takes as --track",
     **dict.fromkeys((".mcap", ".db3", ".bag"), "import takes a ROS log as --legs, --imu, --track"),
@@ -61,7 +67,7 @@ def is_table_file(path: Path) -> bool:
 
 
 def read_table_file(path: Path, *, sheet: str | None = None, bare: bool = False) -> RawTable:
-    """Read a table: CSV and other text, Parquet or Excel; each of them may be gzipped.
+    """Read a table: CSV and other text, Parquet, MATLAB or Excel, each also gzipped.
 
     Args:
         path: The file.
@@ -88,13 +94,13 @@ def read_table_file(path: Path, *, sheet: str | None = None, bare: bool = False)
         )
     if suffix.startswith(_EXCEL):
         table = read_excel_file(path, sheet=sheet)
-    elif bare and suffix.removesuffix(".gz") != ".parquet":
+    elif bare and READERS[suffix.removesuffix(".gz")] is read_csv_file:
         table = read_csv_file(path, bare=True)
     else:
         table = READERS[suffix.removesuffix(".gz")](path)
     if len(table) == 0:
         raise DataError("has a header but no rows", file=path)
-    require_no_footer(table)
+    _require_no_footer(table)
     return table
 
 
@@ -112,3 +118,56 @@ def _suffix(path: Path) -> str:
     name = path.name.lower()
     known = [suffix for suffix in (*READERS, _EXCEL) if name.removesuffix(".gz").endswith(suffix)]
     return "".join([*known[:1], ".gz" * name.endswith(".gz")]) if known else ""
+
+
+_FOOTER = re.compile(
+    r"(?:mean|average|avg|std|sd|stdev|sum|total|minimum|min|maximum|max|median|count|end|eof|"
+    r"mittel\w*|summe|stabw|standardabweichung|anzahl|ende)\b.*",
+    re.IGNORECASE,
+)
+_NO_STATISTIC: Final = re.compile(r"(?:count|end|eof|anzahl|ende)\b.*", re.IGNORECASE)
+"""Words that a column of remarks may well end with."""
+_FOOTER_ROWS: Final = 10  # rows at the end in which a footer is looked for
+
+
+def _require_no_footer(table: RawTable) -> None:
+    """Check that no column ends with a word such as "Mean": such a row is no sample.
+
+    The word is an error in the last `_FOOTER_ROWS` rows of a column whose first cell is a number or
+    date. In a column of texts it is one only if all rows from it on hold such words, each once, and
+    no row above does; else it may be a remark.
+
+    Raises:
+        DataError: One does.
+    """
+    for name, cells in table.columns.items():
+        if cells.dtype.kind in "ifbMm" or len(cells) < 2 or name in table.unreadable:
+            continue
+        first = max(1, len(cells) - _FOOTER_ROWS)
+        last = ["" if cell is None else str(cell).strip() for cell in cells.iloc[first:]]
+        found = [i for i, text in enumerate(last) if _FOOTER.fullmatch(text)]
+        known = cells.iloc[: first + found[0]].dropna() if found else cells.iloc[:0]
+        if not found or not (_are_values(known) or _are_statistics(last[found[0] :], known)):
+            continue
+        below = "numbers" if _are_values(known) else "the rows"
+        problem = f"'{last[found[0]]}' stands below {below}; delete the lines below the table"
+        raise table.fault(problem, name, first + found[0])
+
+
+def _are_values(cells: pd.Series) -> bool:
+    """Return whether there are cells, and the first is a number or date."""
+    return len(cells) > 0 and kind_of(str(cells.iloc[0])) == "value"
+
+
+def _are_statistics(last: Sequence[str], above: pd.Series) -> bool:
+    """Return whether the last texts all name statistics, each once, and none above does.
+
+    Args:
+        last: The last texts of a column.
+        above: The cells above them.
+    """
+    return (
+        len(set(last)) == len(last)
+        and all(_FOOTER.fullmatch(text) and not _NO_STATISTIC.fullmatch(text) for text in last)
+        and not any(_FOOTER.fullmatch(text.strip()) for text in set(map(str, above)))
+    )

@@ -19,14 +19,14 @@ from zebro_lab.tables.header_rows import (
     find_header,
     made_header,
 )
-from zebro_lab.tables.header_units import after_lvm_header, stated_units
+from zebro_lab.tables.header_units import stated_units
 
 BLANKS: Final = r"\s+"
 SEPARATORS: Final[Mapping[str, str]] = {
     ",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", BLANKS: "blanks",
 }  # fmt: skip
 """Name of each separator, in the plural; the keys are those of `pandas.read_csv`."""
-_MARKS: Final = ("#", "%", "//")  # of comments
+MARKS: Final = ("#", "%", "//")  # of comments
 _RECEIPT: Final = re.compile(r"\s*\d\d?:\d\d:\d\d(?:[.,]\d+)?\s*->")
 Line = tuple[int, str]
 
@@ -85,12 +85,11 @@ def find_layout(lines: Sequence[Line], *, bare: bool = False) -> TextLayout:
 
     Raises:
         DataError: There is no header, several layouts fit, or a row has more cells than the header;
-            or all lines are comments, times of receipt stand before them, the table is transposed,
-            or it is one of several segments of LabVIEW.
+            or all lines are comments, times of receipt stand before them, or the table is
+            transposed.
     """
     _require_no_receipt(lines)
-    below = after_lvm_header(lines)
-    body, comments = _without_comments(below)
+    body, comments = _without_comments(lines)
     if not body:
         raise DataError("is empty or all comments (#); expected a header and rows")
     tried = [each for s in SEPARATORS if (each := _candidate(s, body, comments)) is not None]
@@ -102,8 +101,8 @@ def find_layout(lines: Sequence[Line], *, bare: bool = False) -> TextLayout:
         return _layout(best, made_header(names, 0), best.data, body)
     if best.header is None:
         raise _no_header(best, body)
-    above = [*lines[: len(lines) - len(below)], *body[: best.data.first]]
-    settings = [split_line(line, best.separator) for _, line in above]
+    first = body[best.data.first][0]
+    settings = [split_line(line, best.separator) for number, line in lines if number < first]
     return _layout(best, _with_units(best.header, settings), best.data, body)
 
 
@@ -148,7 +147,7 @@ def _require_no_receipt(lines: Sequence[Line]) -> None:
 
 def _without_comments(lines: Sequence[Line]) -> tuple[list[Line], list[Line]]:
     """Split lines into those from the first without a comment mark on, and the comments above."""
-    first = next((i for i, (_, line) in enumerate(lines) if not line.startswith(_MARKS)), None)
+    first = next((i for i, (_, line) in enumerate(lines) if not line.startswith(MARKS)), None)
     first = len(lines) if first is None else first
     bare = [(i, line.lstrip("#%/").strip()) for i, line in lines[:first]]
     return list(lines[first:]), [(i, line) for i, line in bare if line]

@@ -99,17 +99,13 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
         good().assign(slip_ratio=np.linspace(0, 30, N)),
         "row 3 (line 4): the slip ratio is 2.06897, impossible for the definition 'material'",
     ),
-    "repeated time": (
-        put("t", 6, 0.04),
-        "column 't', row 6 (line 7): time 0.04 s repeats within a run",
-    ),
     "time backwards": (
         put("t", 6, 0.0),
         "time goes back to 0 s; sort the rows by time, or if a new run",
     ),
     "zero radius": (
         with_speeds().assign(radius_leg=0.0),
-        "column 'radius_leg', row 1 (line 2): the radius is 0 m; expected more than 0",
+        "column 'radius_leg', row 1 (line 2): is 0 m; expected more than 0",
     ),
     "no radius": (
         with_speeds().drop(columns="radius_ground"),
@@ -163,7 +159,7 @@ COLUMN_FAULTS = {
     ),
     "zero constant radius": (
         "[constants]\nradius_leg = 0\nradius_ground = 0.12",
-        "column 'radius_leg': the radius in [constants] is 0 m; expected more than 0 m",
+        "column 'radius_leg': radius_leg in [constants] is 0 m; expected more than 0 m",
     ),
     "rule column missing": ("runs.by = ['set']", "column 'set': is missing"),
     "condition column missing": ("rows.keep = ['beta == 0']", "column 'beta': is missing"),

@@ -122,6 +122,12 @@ def test_asked_definition_is_reached_from_speeds_and_from_given_slip(tmp_path, p
         np.testing.assert_allclose(data.samples.slip, expected, atol=1e-12)
 
 
+def test_slip_over_the_mean_speed_is_fitted_as_material_slip(tmp_path, plain):
+    data = read_rig_data([write(tmp_path, given_slip("mean"))])
+    assert data.samples.definition == "material"
+    np.testing.assert_allclose(data.samples.slip, plain.samples.slip, atol=1e-12)
+
+
 def test_each_file_is_a_run_by_default(tmp_path):
     columns(tmp_path, RADII)
     write(tmp_path / "b", speeds())
@@ -243,7 +249,7 @@ def test_missing_time_in_one_file_is_noted(tmp_path):
     write(tmp_path, louder(given_slip()).drop(columns="t"), "b.csv")
     data = read_rig_data([tmp_path])
     assert data.samples.time is None
-    assert "1 of 2 files have no time, so no times are used" in data.notes
+    assert "1 of 2 files have no time, so none is used" in data.notes
 
 
 def test_unknown_slip_definition_is_a_settings_error(tmp_path):

@@ -27,7 +27,7 @@ def test_init_counts_every_value_to_check_also_those_of_no_column(tmp_path):
     file.write_text("slip,normal_force [N],traction_force [N]\n0.1,5,1\n")
     result = CliRunner().invoke(app, [str(file)])
     assert 'definition = "?"' in (tmp_path / "columns.toml").read_text()
-    assert 'values that end in "?" in columns.toml, 4: correct each' in result.output
+    assert 'values that end in "?" in columns.toml, 5: correct each' in result.output
 
 
 def test_init_lists_the_units_of_columns_that_it_does_not_use_and_every_column_of_an_imu(tmp_path):

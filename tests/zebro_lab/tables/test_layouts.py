@@ -56,7 +56,8 @@ def numbers(file: Path, kind: str) -> dict[str, np.ndarray]:
 def accepted(written: WrittenColumns) -> str:
     """Accept every guess, and return the kind of the table."""
     text = written.file.read_text(encoding="utf-8")
-    written.file.write_text(text.replace('= "?"', '= "travel"').replace('?"', '"'), "utf-8")
+    text = text.replace('each_row = "?"', "each_row = true").replace('= "?"', '= "travel"')
+    written.file.write_text(text.replace('?"', '"'), "utf-8")
     return written.kind
 
 
@@ -96,11 +97,11 @@ REFERENCE: dict[str, tuple[str | None, dict[str, str] | str]] = {
     }),
     "realdata/single-wheel-sand/smooth.csv": (None, {
         "slip_ratio": "unit sign", "normal_force": "unit sign",
-        "traction_force": "column unit sign",
+        "traction_force": "column unit sign", "traction_force_sd": "unit",
     }),
     "realdata/single-wheel-sand/grouser.csv": (None, {
         "slip_ratio": "unit sign", "normal_force": "unit sign",
-        "traction_force": "column unit sign",
+        "traction_force": "column unit sign", "traction_force_sd": "unit",
     }),
     "realdata/omni-wheels/exp00.csv": (None, {
         "t_s": "", "x_m": "unit", "y_m": "unit sign", "yaw_rad": "column sign",

@@ -66,17 +66,53 @@ def test_a_radius_is_a_constant_or_a_column_and_positive():
     by_row = table_of({}, {}, radius_leg=[0.1, 0.2]).constant_or_column("radius_leg")
     np.testing.assert_array_equal(by_row, [0.2])
     with pytest.raises(
-        DataError, match=r"columns\.toml, column 'radius_leg': the radius in \[constants\] is 0 m"
+        DataError, match=r"columns\.toml, column 'radius_leg': radius_leg in \[constants\] is 0 m"
     ):
         table_of({}, {"radius_leg": 0.0}).constant_or_column("radius_leg")
-    with pytest.raises(
-        DataError, match=r"column 'radius_leg', row 2: the radius is -1 m; expected"
-    ):
+    with pytest.raises(DataError, match=r"column 'radius_leg', row 2: is -1 m; expected"):
         table_of({}, {}, radius_leg=[0.1, -1.0]).constant_or_column("radius_leg")
     with pytest.raises(DataError, match="missing, but needed with the speeds of the discs"):
         table_of({}, {}).constant_or_column("radius_leg")
     with pytest.raises(DataError, match="given twice"):
         table_of({}, {"radius_leg": 0.1}, radius_leg=[0.1, 0.1]).constant_or_column("radius_leg")
+
+
+def test_a_load_that_is_stated_once_is_that_of_every_row(tmp_path):
+    path = write(tmp_path, given_slip().drop(columns="normal_force"))
+    columns(tmp_path, "constants.normal_force = '6600 mN'")
+    np.testing.assert_allclose(read_rig_data([path]).samples.normal_force, np.full(40, 6.6))
+    write(tmp_path, given_slip())
+    with pytest.raises(DataError, match=r"given twice, .* \[constants\] normal_force = 6.6 N"):
+        read_rig_data([path])
+
+
+def test_a_coefficient_times_the_load_is_the_traction(tmp_path):
+    table = given_slip()
+    mu = 100 * table["traction_force"] / table["normal_force"]
+    path = write(tmp_path, table.drop(columns="traction_force").assign(mu=mu, sd=1.0))
+    mapped = "[columns]\ntraction_coefficient = { name = 'mu', unit = '%' }\n"
+    columns(tmp_path, mapped + "traction_coefficient_sd = { name = 'sd', unit = '%' }\n")
+    samples = read_rig_data([path]).samples
+    np.testing.assert_allclose(samples.traction_force, table["traction_force"])
+    np.testing.assert_allclose(samples.force_sd, 0.01 * table["normal_force"])
+
+
+def test_standard_deviations_follow_their_rows_and_are_above_zero(tmp_path):
+    table = given_slip().assign(sd=np.arange(1.0, 41.0), run=np.repeat([1, 2], 20))
+    columns(tmp_path, "columns.traction_force_sd = { name = 'sd', unit = 'mN' }\n"
+            "rows.keep = ['sd > 3']\nruns.leave_out = [1]")  # fmt: skip
+    path = write(tmp_path, table)
+    data = read_rig_data([path])
+    np.testing.assert_allclose(data.samples.force_sd, 1e-3 * np.arange(21, 41))
+    other = write(tmp_path / "other", given_slip().assign(traction_force=1.0))
+    columns(other.parent, "")
+    both = read_rig_data([path, other])
+    assert both.samples.force_sd is None
+    assert "1 of 2 files have no traction_force_sd, so none is used" in both.notes
+    write(tmp_path, table.assign(sd=0.0))
+    columns(tmp_path, "columns.traction_force_sd = 'sd'")
+    with pytest.raises(DataError, match=r"row 1 .*the standard deviation is 0 N; expected more"):
+        read_rig_data([path])
 
 
 def test_table_without_any_condition_met_is_an_error(tmp_path):

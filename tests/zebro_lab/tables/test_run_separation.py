@@ -2,6 +2,7 @@
 """Rows are assigned to runs by a column, by pauses, or one by one."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from support.rig_tables import N, columns, given_slip, write
@@ -38,14 +39,9 @@ def test_each_row_is_a_trial_without_time(tmp_path):
     assert data.samples.time is None
 
 
-@pytest.mark.parametrize(
-    ("t", "message"),
-    [(0.0, "time goes back to 0 s; .* if a new run begins here"),
-     (0.016, "time 0.016 s repeats within a run")],
-)  # fmt: skip
-def test_time_increases_within_a_run_and_may_restart_with_another(tmp_path, t, message):
-    table = given_slip()
-    table.loc[5, "t"] = t
+def test_time_increases_within_a_run_and_may_restart_with_another(tmp_path):
+    table, message = given_slip(), "time goes back to 0 s; .* if a new run begins here"
+    table.loc[5, "t"] = 0.0
     path = write(tmp_path, table.assign(trial=np.where(table.index < 5, "a", "b")))
     with pytest.raises(DataError, match=message) as raised:
         read_rig_data([path])
@@ -53,7 +49,40 @@ def test_time_increases_within_a_run_and_may_restart_with_another(tmp_path, t, m
     columns(tmp_path, "runs.by = 'trial'")
     samples = read_rig_data([path]).samples
     assert samples.run_names == ("rig trial=a", "rig trial=b")
-    np.testing.assert_array_equal(samples.time[4:6], [0.016, t])
+    np.testing.assert_array_equal(samples.time[4:6], [0.016, 0.0])
+
+
+@pytest.mark.parametrize("rate", [1300, 2000])
+def test_times_that_rounding_made_equal_are_those_of_even_spacing(tmp_path, rate):
+    table = pd.concat([given_slip().assign(run=run) for run in (1, 2)], ignore_index=True)
+    t = np.arange(len(table)) / rate
+    data = read_rig_data([write(tmp_path, table.assign(t=np.round(t, 3)))])
+    np.testing.assert_allclose(np.diff(data.samples.time[:N]), 1 / rate, rtol=0.05)
+    np.testing.assert_allclose(data.samples.time, t, atol=1e-3)
+    (note,) = (note for note in data.notes if "times repeat" in note)
+    assert note.endswith("as if rounded; the even spacing that this hides is taken")
+
+
+def test_times_that_repeat_otherwise_are_not_used(tmp_path):
+    table = given_slip().assign(t=np.repeat([0.0, 0.01, 0.02, 0.5], N // 4))
+    data = read_rig_data([write(tmp_path, table)])
+    assert data.samples.time is None
+    assert any("36 of 40 times repeat" in note and "not used" in note for note in data.notes)
+
+
+def test_runs_are_left_out_by_number(tmp_path):
+    columns(tmp_path, "[runs]\neach_row = true\nleave_out = [2, 12]")
+    table = given_slip().assign(run=np.repeat([3, 5, 7, 9], N // 4))
+    table.loc[11, "traction_force"] = np.nan  # left out before it is read
+    data = read_rig_data([write(tmp_path, table)])
+    rows = [row for row in range(1, N + 1) if row not in (2, 12)]
+    assert data.samples.run_names == tuple(f"rig row {row}" for row in rows)
+    assert "rig.csv: rows 2, 12 are left out" in data.notes
+    columns(tmp_path, "runs.leave_out = [1, 2]")
+    assert read_rig_data([tmp_path / "rig.csv"]).samples.run_names == ("rig run=7", "rig run=9")
+    columns(tmp_path, "runs.leave_out = [5]")
+    with pytest.raises(DataError, match=r"leave_out in .* names runs 5; expected some of 1 to 4"):
+        read_rig_data([tmp_path / "rig.csv"])
 
 
 def test_times_that_are_no_seconds_are_asked_about_and_pauses_between_runs_are_not(tmp_path):

@@ -56,7 +56,7 @@ def test_a_table_without_rows_is_refused(tmp_path):
     ("name", "advice"),
     [
         ("a.xls", "save it as .xlsx"),
-        ("a.mat", "export"),
+        ("a.tdms", "export"),
         ("run.ZIP", "unpack it"),
         ("run.tar.gz", "unpack it"),
         ("a.csv.xz", "unpack it"),

@@ -211,12 +211,12 @@ def is_canonical(header: str, canonical: str) -> bool:
 def _is_kind(kind: str, found: Mapping[str, ColumnGuess]) -> bool:
     """Return whether the columns found suffice for a table of a kind.
 
-    A rig needs a force whose header is not in `WEAK`; legs all six angles; an IMU roll and pitch, a
-    quaternion or all three rates; a track x and y.
+    A rig needs a force or a coefficient whose header is not in `WEAK`; legs all six angles; an IMU
+    roll and pitch, a quaternion or all three rates; a track x and y.
     """
     if kind == RIG:
-        forces = [found[name] for name in ("normal_force", "traction_force") if name in found]
-        return any(not _is_weak(guess.name) for guess in forces)
+        forces = ("normal_force", "traction_force", "traction_coefficient")
+        return any(not _is_weak(found[name].name) for name in forces if name in found)
     if kind == LEGS:
         return all(name in found for name in ANGLES)
     if kind == IMU:

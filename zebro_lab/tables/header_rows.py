@@ -129,11 +129,11 @@ def _without_labels(row: Row) -> Row:
 
     Each cell "Channel name" stands above a column of times.
     """
-    label = row[0].strip().casefold()
-    if not _LABEL.fullmatch(label):
+    cells = [cell.strip().casefold() for cell in row]
+    if not _LABEL.fullmatch(cells[0]):
         return row
-    meant = "" if label.startswith(("unit", "einheit")) else "Time"
-    return [meant if cell.strip().casefold() == label else cell for cell in row]
+    meant = "" if cells[0].startswith(("unit", "einheit")) or "time" in cells else "Time"
+    return [meant if plain == cells[0] else cell for plain, cell in zip(cells, row, strict=True)]
 
 
 def made_header(

@@ -153,3 +153,22 @@ def test_a_specific_force_that_averages_one_is_taken_for_multiples_of_g(up, unit
     raw = RawTable(Path("a.csv"), {name: pd.Series(values) for name, values in cells.items()})
     found = [guess_columns(raw, IMU)[f"force_{axis}"].unit for axis in "xyz"]
     assert {each.unit + "?" * bool(each.doubt) for each in found if each} == {unit}
+
+
+@pytest.mark.parametrize(
+    ("headers", "expected"),
+    [
+        (["Wheel speed [rpm]", "Belt speed [m/s]"], ["omega_leg", "speed_ground"]),
+        (["v_ball (mm/s)", "u disc (mm/s)"], ["speed_ground", "speed_leg"]),
+        (["omega_leg", "omega_ground"], ["omega_leg", "omega_ground"]),
+        (["F_T (N)", "mu (-)", "std F_T (N)"], ["traction_force", None, "traction_force_sd"]),
+        (["COF", "COF std"], ["traction_coefficient", "traction_coefficient_sd"]),
+        (["Friction (-)", "W (N)"], ["traction_coefficient", "normal_force"]),
+        (["Friction (N)", "Applied load (N)"], ["traction_force", "normal_force"]),
+        (["F_t/F_n", "Fn mean (N)"], ["traction_coefficient", "normal_force"]),
+        (["avg_Fx", "std_Fx"], ["traction_force", "traction_force_sd"]),
+    ],
+)
+def test_quantities_of_published_tables_are_told_by_name_and_unit(headers, expected):
+    found = {guess.name: name for name, guess in guess_columns(one(*headers)).items()}
+    assert [found.get(header) for header in headers] == expected

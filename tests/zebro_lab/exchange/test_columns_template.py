@@ -5,6 +5,7 @@ import tomllib
 from pathlib import Path
 
 import pandas as pd
+import pytest
 
 from zebro_lab.exchange.column_guesses import guess_columns
 from zebro_lab.exchange.columns_template import render_columns
@@ -34,3 +35,22 @@ def test_zero_and_order_of_leg_angles_are_to_check():
     assert read["theta6"] == {
         "name": "leg6?", "unit": "rad?", "sign": "1?", "offset": "0 deg?",
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("header", "definition"),
+    [("SRR (%)", "mean?"), ("Slide-to-roll ratio [-]", "mean?"), ("creepage", "mean?"),
+     ("slide/roll ratio", "mean?"), ("slip [%]", "?"), ("SR", "?")],
+)  # fmt: skip
+def test_slip_over_the_mean_speed_is_proposed_where_its_name_says_so(header, definition):
+    read = tomllib.loads(rendered("rig", {"t": [0.0, 1.0], header: [0.1, 0.2], "FX": [1.0, 2.0]}))
+    assert read["columns"]["slip_ratio"]["definition"] == definition
+
+
+def test_what_a_table_of_means_lacks_is_asked_for():
+    read = tomllib.loads(rendered("rig", {"slip [%]": [0.1, 35.0], "friction force [N]": [0.3, 2]}))
+    assert read["constants"] == {"normal_force": "?"}
+    assert read["runs"] == {"each_row": "?"}
+    whole = {"t": [0.0, 1.0], "slip [%]": [0.1, 35.0], "FX": [0.3, 2.0], "FZ": [6.0, 6.0]}
+    assert tomllib.loads(rendered("rig", whole))["constants"] == {}
+    assert tomllib.loads(rendered("rig", whole))["runs"] == {}

@@ -75,8 +75,5 @@ def _to_check(written: "WrittenColumns") -> list[str]:
         advice = [f'values that end in "?" in columns.toml, {written.doubts}: correct each and '
                   'delete its "?"; until then no command reads the table']  # fmt: skip
     if written.kind == "rig":
-        advice.append(
-            "slip_ratio needs its definition, the speeds of both discs their radii in [constants], "
-            "and [runs] what separates runs, where neither a column 'run' nor files do"
-        )
+        advice.append("angular speeds need radii in [constants], runs of one file a rule in [runs]")
     return advice

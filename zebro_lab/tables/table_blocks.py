@@ -18,7 +18,6 @@ from zebro_lab.tables.header_rows import is_full, unique_names
 from zebro_lab.tables.header_units import LVM_TIME
 from zebro_lab.tables.text_layout import BLANKS, MARKS, TextLayout, split_line
 
-_LONGEST_TITLE: Final = 60  # characters
 _NUMBERS: Final = frozenset("0123456789+-.")  # first characters of rows, to pass over these quickly
 
 
@@ -48,7 +47,7 @@ class Block:
             width: Number of columns.
         """
         titles = [row for row in self.cells if any(row) and not is_full(row, width)]
-        return " ".join(filter(None, titles[-1]))[:_LONGEST_TITLE] if titles else ""
+        return " ".join(filter(None, titles[-1]))[:60] if titles else ""
 
     def steps(self) -> tuple[float, float] | None:
         """Return the first value and the step of x that settings of LabVIEW state; None without."""
@@ -78,9 +77,12 @@ def find_blocks(path: Path, lines: Iterable[str], layout: TextLayout) -> list[Bl
     heading: dict[int, list[str]] = {}
     rows, labelled = 0, False
     between = "" if layout.separator == BLANKS else layout.separator  # every line has ""
+    blank = " \r\n" if between == "\t" else None  # of tabs alone is a row
     for number, line in enumerate(lines, start=1):
         if blocks and not heading and line[:1] in _NUMBERS and between in line:
             rows += 1
+            continue
+        if not line.strip(blank):
             continue
         comment = line.startswith(MARKS)
         cells = split_line(line.strip().lstrip("#%/").strip(), layout.separator)
@@ -88,15 +90,16 @@ def find_blocks(path: Path, lines: Iterable[str], layout: TextLayout) -> list[Bl
             above.append(cells)
         elif blocks and (comment or _is_heading(cells, blocks[0], layout, labelled=labelled)):
             heading[number] = [" ".join(cells)] if comment and cells not in above else cells
-        elif line.strip():
+        else:
             if not blocks:
                 blocks.append(Block(0, (), tuple(above)))
                 labelled = _kinds(cells)[:1] == ["text"]
-            elif heading:
+            elif any(map(any, heading.values())):  # not of empty rows alone
                 _require_known(path, heading, blocks[0], len(layout.header.names))
                 blocks.append(Block(rows, tuple(heading), tuple(heading.values())))
                 heading = {}
-            rows += 1
+            rows += 1 + len(heading)
+            heading = {}
     return blocks
 
 
@@ -106,14 +109,14 @@ def _kinds(cells: Sequence[str]) -> list[str]:
 
 
 def _is_heading(cells: list[str], top: Block, layout: TextLayout, *, labelled: bool) -> bool:
-    """Return whether a line between rows is a heading: a line from above the rows, or a title.
+    """Return whether a line between rows may be of a heading: from above the rows, a title, empty.
 
     A title is words alone, or, where it is shorter than a row, a word and a value, between blanks
     more of both. Where rows begin with a word themselves (`labelled`), no line is a title.
     """
     kinds = _kinds(cells)
     if cells in top.cells or labelled or kinds[:1] != ["text"]:
-        return cells in top.cells
+        return cells in top.cells or not any(cells)
     texts, values = kinds.count("text"), kinds.count("value")
     mixed = texts == values == 1 or (layout.separator == BLANKS and texts >= values)
     short = not is_full(cells, len(layout.header.names))

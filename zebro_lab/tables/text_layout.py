@@ -112,7 +112,7 @@ def _with_units(header: Header, settings: Sequence[Sequence[str]]) -> Header:
     if not units:
         return header
     note = "units are taken from the settings above the header"
-    return replace(header, units={**units, **header.units}, notes=(*header.notes, note))
+    return replace(header, units={**units, **header.units}, notes=(note,))
 
 
 def split_line(line: str, separator: str) -> list[str]:

@@ -13,6 +13,8 @@ from zebro_lab.tables.table_files import read_table_file
         ("t,F|1,2|3,4|t,F|1,5|3,6", "1122"),
         ("t;F|s;N|1;2|3;4||t;F|s;N|1;5|3;6", "1122"),
         ("first|t,F|1,2|3,4|second|1,5|3,6|third,,|1,7", "first first second second third"),
+        ("||t,F|1,2||3,4||t,F|1,5", "112"),
+        ("one,|t,F|1,2|3,4|,|two,|t,F|1,5", "one one two"),
         ("10 N|t,F|1,2|3,4|20 N|t,F|1,5|20 N|t,F|3,6", "10 N,10 N,20 N,20 N (2)"),
         ("# run 1|t F|1 2|# run 2|1 5|3 6", "1,run 2,run 2"),
         ("t F v|1 2 0|Load 20|1 5 0|3 6 0", "1,Load 20,Load 20"),
@@ -37,6 +39,7 @@ def test_headings_begin_runs(tmp_path, lines, runs):
         ("t,F|1,2|t,v|1,5", "line 3, 't v', between rows is not the header above them"),
         ("t,F,v|1,2,3|ERR,5,6|1,5,3", "row 2 .*'ERR' is not a number"),
         ("t,F,v|1,2,3|Mean,5,6|1,5,3", "row 2 .*'Mean' stands below numbers"),
+        ("t,F|1,2|,|3,4|x,5", "row 4 .*'x' is not a number"),
         ("t,F|1,2|end,|", "'end' stands below numbers"),
     ],
 )

@@ -43,7 +43,6 @@ _FORCES = ("force_x", "force_y", "force_z")
 _OTHER_QUANTITY: Final = {
     "omega_leg": "m/s", "omega_ground": "m/s", "speed_leg": "rad/s", "speed_ground": "rad/s",
     "traction_force": "dimensionless", "traction_coefficient": "N",
-    "traction_force_sd": "dimensionless", "traction_coefficient_sd": "N",
 }  # fmt: skip
 """Unit by which a header that may mean a canonical column is known to mean another one."""
 
@@ -118,8 +117,7 @@ def guess_columns(table: RawTable, kind: str = RIG) -> dict[str, ColumnGuess]:
             continue
         fitting = [
             name for name in table.columns
-            if name not in taken and _fits(name, canonical, kind, lowest_leg)
-            and not _states_other(table, name, canonical)
+            if name not in taken and _fits(table, name, canonical, kind, lowest_leg)
         ]  # fmt: skip
         fitting.sort(key=lambda name: (not is_canonical(name, canonical), _is_weak(name)))
         if fitting:
@@ -225,13 +223,14 @@ def _is_kind(kind: str, found: Mapping[str, ColumnGuess]) -> bool:
     return {"x_m", "y_m"} <= found.keys()
 
 
-def _fits(header: str, canonical: str, kind: str, lowest_leg: int) -> bool:
+def _fits(table: RawTable, header: str, canonical: str, kind: str, lowest_leg: int) -> bool:
     """Return whether a header may mean a canonical column of a kind.
 
     It does if it is the canonical name, if it names the leg of that angle, or if a pattern of
-    `NAMES` matches it as a whole, with or without its unit.
+    `NAMES` matches it as a whole, with or without its unit, unless that is of `_OTHER_QUANTITY`.
 
     Args:
+        table: The table.
         header: Header in the file.
         canonical: Canonical name of the column.
         kind: One of `KINDS`.
@@ -242,19 +241,12 @@ def _fits(header: str, canonical: str, kind: str, lowest_leg: int) -> bool:
     if canonical in ANGLES:
         leg = leg_of(header)
         return leg is not None and leg[0] - min(lowest_leg, 1) + 1 == int(canonical[-1])
-    pattern = NAMES[kind].get(canonical)
-    if pattern is None:
+    pattern, other = NAMES[kind].get(canonical), _OTHER_QUANTITY.get(canonical)
+    unit = table.unit_of(header, UNITS[RIG][canonical] or "") if other else None
+    if pattern is None or (unit and other and is_unit_of(unit, other)):
         return False
     names = {split_header(header)[0], plain_name(header)}
     return any(re.fullmatch(pattern, name) for name in names)
-
-
-def _states_other(table: RawTable, header: str, canonical: str) -> bool:
-    """Return whether the file states a unit by which a header means `_OTHER_QUANTITY`."""
-    if canonical not in _OTHER_QUANTITY:
-        return False
-    unit = table.unit_of(header, UNITS[RIG][canonical] or "")
-    return unit is not None and is_unit_of(unit, _OTHER_QUANTITY[canonical])
 
 
 def _is_weak(header: str) -> bool:

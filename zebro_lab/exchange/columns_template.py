@@ -45,8 +45,6 @@ _RUNS: Final = """
 {trials}  # true if every row is the mean of a trial, false for a recording
 # leave_out = [12]    # numbers of runs that are not read, of rows where each is one
 """
-_MOST_TRIALS: Final = 1000
-"""Rows above which a table is no list of means."""
 _ROWS: Final = """
 [{at}rows]  # only rows that meet all of these are read; names with < > = ! stand in backticks
 # keep = ["{column} > 0"]
@@ -103,10 +101,9 @@ def render_columns(
     text += "".join(_column(table, name, kind, guesses, at) for name in UNITS[kind])
     if kind == RIG:
         column = _quoted(f"`{next(iter(table.columns))}`")[1:-1]
-        load = "# " * ("normal_force" in guesses)
-        unclear = len(table) <= _MOST_TRIALS and not {"t", "run"} & guesses.keys()
-        text += _CONSTANTS.format(at=at, load=load, doubt=DOUBT)
-        trials = f'each_row = "{DOUBT}"' if unclear else "# each_row = true   "
+        timed = {"t", "run"} & guesses.keys()
+        text += _CONSTANTS.format(at=at, load="# " * ("normal_force" in guesses), doubt=DOUBT)
+        trials = "# each_row = true   " if timed else f'each_row = "{DOUBT}"'
         text += _RUNS.format(at=at, trials=trials)
         text += _ROWS.format(at=at, column=column) + _LOAD_CELL.format(at=at)
     listed = "".join(
@@ -152,8 +149,7 @@ def _slip_lines(lines: list[str], guesses: Mapping[str, ColumnGuess]) -> list[st
     is_mean = re.fullmatch(MEAN_SLIP, split_header(guesses["slip_ratio"].name)[0])
     meant = SlipDefinition.MEAN if is_mean else ""
     if "slip_definition" not in guesses:
-        names = ", ".join(SlipDefinition)
-        lines = [*lines, f'definition = "{meant}{DOUBT}"  # NEEDED: one of {names}']
+        lines += [f'definition = "{meant}{DOUBT}"  # NEEDED: material, travel, larger or mean']
     if all({f"omega_{disc}", f"speed_{disc}"} & guesses.keys() for disc in DISCS):
         note = "# Slip comes from the disc speeds; to use this column, uncomment:"
         return [note, *(f"# {line}" for line in lines)]

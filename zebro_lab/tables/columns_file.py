@@ -241,13 +241,10 @@ def _runs(table: SettingsTable) -> RunRule:
     given = [key for key in ("by", "gap", "each_row") if key in runs]
     if len(given) > 1:
         raise table.fault(f"found {' and '.join(given)}; keep only one of them", "runs")
-    trials = runs.value("each_row", False)
-    if trials not in (True, False, "true"):  # a text where the "?" of a guess was deleted
-        raise runs.fault(f"found {trials!r}; expected true or false", "each_row")
     return RunRule(
         by=runs.texts("by"),
         gap=runs.quantity("gap", "s", above=0.0) if "gap" in runs else None,
-        each_row=bool(trials),
+        each_row=runs.flag("each_row", False),
         leave_out=runs.wholes("leave_out", least=1, most=10**9) if "leave_out" in runs else (),
     )
 

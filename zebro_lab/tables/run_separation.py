@@ -87,9 +87,7 @@ def run_title(table: RigTable, row: int, by: Sequence[str]) -> str:
     return " ".join(f"{name}={_shown(cell)}" for name, cell in cells)
 
 
-def run_names(
-    titles: Sequence[str], label: str, rule: str, numbers: Sequence[int]
-) -> tuple[str, ...]:
+def run_names(titles: list[str], label: str, rule: str, numbers: list[int]) -> tuple[str, ...]:
     """Return the name of each run of a table: its title, or its number if no run has a title.
 
     By the rule `ONE_RUN` the name is the label alone. Titles that repeat are numbered.
@@ -162,8 +160,7 @@ def run_times(table: RigTable, runs: Runs) -> tuple[Array | None, tuple[str, ...
     if again:
         time = _even_times(time, runs.index)
         used = "they are not used" if time is None else "the even spacing that this hides is taken"
-        notes = (f"{table.raw.path.name}: {again} of {len(inside)} times repeat the one before, as "
-                 f"if rounded; {used}",)  # fmt: skip
+        notes = (f"{table.raw.path.name}: {again} times repeat, as if rounded; {used}",)
     if time is None:
         return None, notes
     step = np.diff(time, prepend=-np.inf)

@@ -206,9 +206,7 @@ def _require_agreement(table: RigTable, ratio: Array, definition: SlipDefinition
     moving = (leg != 0) & (ground != 0)
     if not moving.any():
         return
-    off = {
-        each: _spread((ratio - slip_ratio(leg, ground, each))[moving]) for each in SlipDefinition
-    }
+    off = {d: _spread((ratio - slip_ratio(leg, ground, d))[moving]) for d in SlipDefinition}
     best = min(off, key=lambda each: off[each])
     agrees = off[best] < _AGREES * _spread(ratio)
     if agrees and off[definition] > max(_CONTRADICTS * off[best], _LEAST_DIFFERENCE):

@@ -128,11 +128,8 @@ def _require_known(path: Path, heading: Mapping[int, list[str]], top: Block, wid
     for number, cells in heading.items():
         full = is_full(cells, width) and "value" not in _kinds(cells)
         if full and cells not in top.cells:
-            raise DataError(
-                f"line {number}, '{' '.join(cells)[:60]}', between rows is not the header above "
-                "them: another table begins here, make a file of each",
-                file=path,
-            )
+            problem = "is not the header above the rows: another table begins, make a file of each"
+            raise DataError(f"line {number}, '{' '.join(cells)[:60]}', {problem}", file=path)
 
 
 def with_blocks(

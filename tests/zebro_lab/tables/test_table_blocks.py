@@ -36,7 +36,7 @@ def test_headings_begin_runs(tmp_path, lines, runs):
 @pytest.mark.parametrize(
     ("lines", "problem"),
     [
-        ("t,F|1,2|t,v|1,5", "line 3, 't v', between rows is not the header above them"),
+        ("t,F|1,2|t,v|1,5", "line 3, 't v', is not the header above the rows"),
         ("t,F,v|1,2,3|ERR,5,6|1,5,3", "row 2 .*'ERR' is not a number"),
         ("t,F,v|1,2,3|Mean,5,6|1,5,3", "row 2 .*'Mean' stands below numbers"),
         ("t,F|1,2|,|3,4|x,5", "row 4 .*'x' is not a number"),
@@ -90,5 +90,5 @@ def test_a_segment_of_other_channels_is_refused(tmp_path):
     file = tmp_path / "rig.lvm"
     first = LABVIEW.format(x0="0", step="0,05")
     file.write_text(first + first[first.index("Channels") :].replace("Fx", "Fy"))
-    with pytest.raises(DataError, match="'X_Value Fz Fy Comment', between rows is not the header"):
+    with pytest.raises(DataError, match="'X_Value Fz Fy Comment', is not the header"):
         read_table_file(file)

@@ -18,7 +18,7 @@ from zebro_lab.tables.header_rows import is_full, unique_names
 from zebro_lab.tables.header_units import LVM_TIME
 from zebro_lab.tables.text_layout import BLANKS, MARKS, TextLayout, split_line
 
-_NUMBERS: Final = frozenset("0123456789+-.")  # first characters of rows, to pass over these quickly
+_VALUES: Final = frozenset('0123456789+-.,:/eETZ" \t')  # of numbers and dates, quick to tell
 
 
 @dataclass(frozen=True)
@@ -76,10 +76,11 @@ def find_blocks(path: Path, lines: Iterable[str], layout: TextLayout) -> list[Bl
     blocks: list[Block] = []
     heading: dict[int, list[str]] = {}
     rows, labelled = 0, False
-    between = "" if layout.separator == BLANKS else layout.separator  # every line has ""
+    between = " " if layout.separator == BLANKS else layout.separator
     blank = " \r\n" if between == "\t" else None  # of tabs alone is a row
     for number, line in enumerate(lines, start=1):
-        if blocks and not heading and line[:1] in _NUMBERS and between in line:
+        first = line.lstrip(" ").partition(between)[0]
+        if blocks and not heading and _VALUES.issuperset(first) and any(map(str.isdigit, first)):
             rows += 1
             continue
         if not line.strip(blank):
@@ -114,13 +115,13 @@ def _is_heading(cells: list[str], top: Block, layout: TextLayout, *, labelled: b
     A title is words alone, or, where it is shorter than a row, a word and a value, between blanks
     more of both. Where rows begin with a word themselves (`labelled`), no line is a title.
     """
-    kinds = _kinds(cells)
-    if cells in top.cells or labelled or kinds[:1] != ["text"]:
-        return cells in top.cells or not any(cells)
+    known = cells in top.cells or not any(cells)
+    kinds = [] if known or labelled else _kinds(cells)
+    if kinds[:1] != ["text"]:
+        return known
     texts, values = kinds.count("text"), kinds.count("value")
     mixed = texts == values == 1 or (layout.separator == BLANKS and texts >= values)
-    short = not is_full(cells, len(layout.header.names))
-    return top.is_segment or values == 0 or (mixed and short)
+    return top.is_segment or not values or (mixed and not is_full(cells, len(layout.header.names)))
 
 
 def _require_known(path: Path, heading: Mapping[int, list[str]], top: Block, width: int) -> None:

@@ -15,6 +15,8 @@ from zebro_lab.tables.table_files import read_table_file
         ("first|t,F|1,2|3,4|second|1,5|3,6|third,,|1,7", "first first second second third"),
         ("||t,F|1,2||3,4||t,F|1,5", "112"),
         ("one,|t,F|1,2|3,4|,|two,|t,F|1,5", "one one two"),
+        ("E,t,F|1,2,3|E,t,F|1,5,3", "12"),
+        ("10 N,|t,F|1,2|20 N,|1,5", "10 N,20 N"),
         ("10 N|t,F|1,2|3,4|20 N|t,F|1,5|20 N|t,F|3,6", "10 N,10 N,20 N,20 N (2)"),
         ("# run 1|t F|1 2|# run 2|1 5|3 6", "1,run 2,run 2"),
         ("t F v|1 2 0|Load 20|1 5 0|3 6 0", "1,Load 20,Load 20"),

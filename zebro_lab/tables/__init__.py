@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Read CSV, Excel and Parquet tables with column maps and units into arrays in SI."""
+"""Read CSV, Excel, MATLAB and Parquet tables with column maps and units into arrays in SI."""

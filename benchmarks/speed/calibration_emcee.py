@@ -94,12 +94,13 @@ def scipy_log_likelihood(posterior: SlipPosterior, values: Array) -> float:
     for i, (first, end) in enumerate(pairwise(starts)):
         part = slice(first, end)
         noise, slope = predicted.noise[0, part], predicted.slope[0, part]
+        load_slope = predicted.load_slope[0, part]
         lag = np.abs(np.subtract.outer(np.arange(len(noise)), np.arange(len(noise))))
         covariance = (
             np.outer(noise, noise) * rho**lag
-            + np.diag(slope**2 * own[part])
+            + np.diag(slope**2 * own[part] + load_slope**2 * blocks.load_error[part])
             + np.outer(slope, slope) * shared[i]
-            + tau**2
+            + tau**2 * (1 + np.outer(load_slope, load_slope))
         )
         residual = blocks.traction_force[part] - predicted.force[0, part]
         total += float(multivariate_normal.logpdf(residual, cov=covariance))
@@ -112,17 +113,21 @@ def numpy_log_likelihood(posterior: SlipPosterior, values: Array) -> float:
     predicted = predict_blocks(blocks, posterior.law, values[None])
     rho, tau = values[-2:]
     own, shared = slip_errors(blocks, values)
-    residual, noise, slope, own = (
+    own = predicted.slope**2 * own + predicted.load_slope**2 * blocks.load_error
+    residual, noise, slope, load_slope, own = (
         each.reshape(blocks.n_runs, -1)
-        for each in (blocks.traction_force - predicted.force, predicted.noise, predicted.slope, own)
-    )
+        for each in (
+            blocks.traction_force - predicted.force, predicted.noise, predicted.slope,
+            predicted.load_slope, own,
+        )
+    )  # fmt: skip
     size = residual.shape[1]
     lag = np.abs(np.subtract.outer(np.arange(size), np.arange(size)))
     covariance = (
         noise[:, :, None] * noise[:, None, :] * rho**lag
-        + (slope**2 * own)[:, :, None] * np.eye(size)
+        + own[:, :, None] * np.eye(size)
         + slope[:, :, None] * slope[:, None, :] * shared[:, None, None]
-        + tau**2
+        + tau**2 * (1 + load_slope[:, :, None] * load_slope[:, None, :])
     )
     _, log_determinant = np.linalg.slogdet(covariance)
     white = np.linalg.solve(covariance, residual[:, :, None])[:, :, 0]

@@ -12,6 +12,7 @@ _MEASURABLE = {
     SlipDefinition.MATERIAL: (-np.inf, 1.0),
     SlipDefinition.TRAVEL: (-0.9, np.inf),
     SlipDefinition.LARGER: (-0.9, 0.9),
+    SlipDefinition.MEAN: (-1.6, 2.0),
 }
 """Slip ratios that a rig can hold, without those where the leg disc would have to stand [-]."""
 

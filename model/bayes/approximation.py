@@ -8,38 +8,36 @@ import numpy as np
 from model.bayes.drawing.laplace import LaplaceMixture
 from model.bayes.drawing.shear import find_shear
 from model.bayes.drawing.tails import approximate
+from model.bayes.drawing.weighted import importance_draws
+from model.bayes.plain_fit import PlainFit
 from model.bayes.posterior import SlipPosterior
-from model.bayes.preliminary import least_squares_values
 
 FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 PRIOR_DRAWS = 400
+TRIED_DRAWS = 1000  # from which it is told whether straightening helps
 PRIOR_STARTS = 12  # further starts of the optimisation, from the best of the draws to the worst
 
 
-def starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
+def starting_points(
+    posterior: SlipPosterior, plain: PlainFit, rng: np.random.Generator
+) -> np.ndarray:
     """Choose starting points of the optimisation in coordinates z, shape (m, d).
 
-    Two are at the least-squares curve, with a low and a high noise. Up to `FEW_BLOCKS` blocks 12 to
+    Two are at the plain fit's curve, with a low and a high noise. Up to `FEW_BLOCKS` blocks 12 to
     23 of 400 prior draws follow, evenly from the best to the worst within the support (fewer if it
     has fewer than 12): few data allow several shapes, and one start finds one mode.
 
     Args:
         posterior: The posterior density.
+        plain: The plain fit of the same law and data.
         rng: Source of randomness.
-
-    Raises:
-        FitError: No prior draw is valid at the measured loads, or a residual overflowed.
     """
     blocks, law = posterior.blocks, posterior.law
-    values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
-    force = law.force(blocks.slip, blocks.normal_force, values)
-    size = float(np.std(blocks.traction_force - force))
+    residual = plain.residual(blocks.slip, blocks.normal_force, blocks.traction_force)
+    size = float(np.std(residual))
     names = [parameter.name for parameter in law.parameters]
-    known = dict(zip(names, map(float, values), strict=True))
-    near = [
-        posterior.coordinates({**known, "noise_floor": size * share, "noise_slope": 0.01})
-        for share in (0.3, 1.0)
-    ]
+    known = dict(zip(names, map(float, plain.values), strict=True), radius_error=plain.zero)
+    near = [posterior.coordinates({**known, "noise_floor": size * share}) for share in (0.3, 1.0)]
     if len(blocks) > FEW_BLOCKS:
         return np.stack(near)
     drawn = rng.standard_normal((PRIOR_DRAWS, len(posterior.free)))
@@ -60,11 +58,17 @@ def straightened(
 
     Returns:
         The same posterior in straightened coordinates, and its Laplace approximations there; both
-        as given where the posterior is straight or has several modes.
+        as given where the posterior is straight or has several modes, or where fewer of
+        `TRIED_DRAWS` draws are effective in straightened coordinates.
     """
     mode, *others = approximation.modes
     shear = None if others else find_shear(posterior.log_density, mode, rng)
     if shear is None:
         return posterior, approximation
     sheared = replace(posterior, shear=shear)
-    return sheared, approximate(sheared.log_density, mode.mode[None])
+    mixture = approximate(sheared.log_density, mode.mode[None])
+    effective = [
+        importance_draws(each.log_density, proposal, n=TRIED_DRAWS, rng=rng).effective_size
+        for each, proposal in ((posterior, approximation), (sheared, mixture))
+    ]
+    return (sheared, mixture) if effective[1] > effective[0] else (posterior, approximation)

@@ -30,7 +30,7 @@ class CrossValidation:
     Attributes:
         fold: Index of the fold in which each run was left out, shape (n_runs,).
         values: Law and measurement parameters at the posterior mode without each fold's runs,
-            shape (n_folds, k + 12).
+            shape (n_folds, k + 11).
         log_density: Log density of each run's blocks at the mode without the run, (n_runs,) [-].
     """
 
@@ -76,7 +76,7 @@ def measured_force(
     Args:
         law: The slip law, of k parameters.
         values: Law and measurement parameters, of which gains, load bias, crosstalk, the error of
-            the radii and rolling resistance are used, shape (k + 12,).
+            the radii and rolling resistance are used, shape (k + 11,).
         slip: Slip ratio, shape (n,) [-].
         normal_force: Measured normal force, shape (n,) [N].
         definition: Definition of the slip ratios.
@@ -148,7 +148,7 @@ def cross_validate(
 
 
 def _fit_without(folds: _Folds, index: int) -> Array:
-    """Return the values of all parameters at the mode without a fold's runs, shape (k + 12,)."""
+    """Return the values of all parameters at the mode without a fold's runs, shape (k + 11,)."""
     kept = folds.posterior.without_runs(folds.fold == index)
     top = climb(kept.log_density, folds.laplace.mode[None], folds.laplace.covariance)
     return folds.posterior.values(top[None])[0]

@@ -21,7 +21,7 @@ class Draws:
 
     Attributes:
         z: Standard normal coordinates of the free parameters, shape (ensembles, n, d).
-        values: Values of the law's k and the measurement's 12 parameters, (ensembles, n, k + 12).
+        values: Values of the law's k and the measurement's 11 parameters, (ensembles, n, k + 11).
         log_density: Log posterior density up to a constant, shape (ensembles, n).
     """
 
@@ -31,7 +31,7 @@ class Draws:
 
     @property
     def flat(self) -> Array:
-        """`values` with the ensembles joined, shape (ensembles · n, k + 12)."""
+        """`values` with the ensembles joined, shape (ensembles · n, k + 11)."""
         return self.values.reshape(-1, self.values.shape[-1])
 
 

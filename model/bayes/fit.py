@@ -10,11 +10,13 @@ import numpy as np
 
 from model.bayes.approximation import starting_points, straightened
 from model.bayes.averaging.blocks import SlipBlocks, block_means
+from model.bayes.averaging.run_noise import noise_sizes, with_true_loads
 from model.bayes.checks.raw import opposed_runs
 from model.bayes.cross_validation import CrossValidation, cross_validate
 from model.bayes.drawing.batches import in_batches
 from model.bayes.drawing.laplace import Laplace, LaplaceMixture
 from model.bayes.drawing.tails import approximate
+from model.bayes.plain_fit import PlainFit, plain_fit
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length
 from model.bayes.priors import Prior
@@ -43,6 +45,7 @@ class PreparedFit:
         load_cell: Prior knowledge of the load cell.
         rig_errors: Prior knowledge of the rig's geometry and rolling resistance.
         defaults: Default prior of each parameter by name, beside those of the posterior.
+        plain: The plain fit of the same law.
         stated: Priors that were stated.
     """
 
@@ -53,6 +56,7 @@ class PreparedFit:
     load_cell: LoadCell
     rig_errors: RigErrors
     defaults: Mapping[str, Prior]
+    plain: PlainFit
     stated: StatedPriors = UNSTATED
 
     @property
@@ -170,23 +174,45 @@ def _prepared(
     """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
     defaults = default_priors(law, everything, load_cell, rig_errors)
+    plain = plain_fit(
+        samples, law, priors=defaults, zero_sd=max(rig_errors.radius_ratio, 1e-9), rng=rng
+    )
     choice = block_choice
     if not isinstance(choice, BlockChoice):
-        choice = choose_block_length(samples, law, priors=defaults, rng=rng, length=choice)
+        choice = choose_block_length(samples, plain, length=choice)
     blocks = block_means(samples, choice.length, wander_share=choice.wander_share)
+    blocks = with_noise(blocks, plain)
     fixed = not_identified(blocks)
     priors, correlation = with_stated(defaults, stated, fixed=fixed)
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)
-    starts = starting_points(posterior, rng)
+    starts = starting_points(posterior, plain, rng)
     density = posterior.log_density
     if len(blocks) >= SHORT_CALLS:
         density = in_batches(density, threads)
     approximation = approximate(density, starts)
     posterior, approximation = straightened(posterior, approximation, rng)
     fit = PreparedFit(
-        posterior, approximation, None, choice, load_cell, rig_errors, defaults, stated
+        posterior, approximation, None, choice, load_cell, rig_errors, defaults, plain, stated
     )
     return validated(fit, executor=executor) if validate else fit
+
+
+def with_noise(blocks: SlipBlocks, plain: PlainFit) -> SlipBlocks:
+    """Return blocks with what is known of true loads and of the size of each run's noise.
+
+    Args:
+        blocks: The block means, with loads as measured.
+        plain: The plain fit of the same data.
+    """
+    load, step = blocks.run_mean(blocks.normal_force)[blocks.run], 1e-3
+    slip = plain.true_slip(blocks.slip)
+    more, less = (plain.law.force(slip, load * (1 + side), plain.values) for side in (step, -step))
+    residual = plain.residual(blocks.slip, load, blocks.traction_force)
+    slope = (more - less) / (2 * step * load)
+    blocks = with_true_loads(blocks, residual, slope)
+    residual = plain.residual(blocks.slip, blocks.normal_force, blocks.traction_force)
+    slip_slope = plain.law.slip_derivative(slip, load, plain.values)
+    return replace(blocks, noise_size=noise_sizes(blocks, residual, slip_slope))
 
 
 def validated(fit: PreparedFit, *, executor: Executor | None = None) -> PreparedFit:

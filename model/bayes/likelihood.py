@@ -5,31 +5,33 @@ For block j of run i
 
 .. math::
     F_{ij} = (1+g_t)\bigl[\bar f(\kappa_{ij} - \varepsilon\,\partial\kappa, N_{ij})
-             - c_r N_{ij}\bigr] + b_i + e_{ij}, \qquad N_{ij} = (1+g_n) F_n - b_n + c\,F_{ij},
+             - c_r N_{ij}\bigr] + b_i + e_{ij}, \qquad
+    N_{ij} = (1+g_n) F_n - b_n + c\,F_{ij} + z_i,
 
 with the law averaged over the spread of the true slip, which a wrong ratio of the radii shifts by
 its relative error :math:`\varepsilon` times :math:`\partial\kappa`, `slip_per_radius_error`; a
 rolling resistance of :math:`c_r` times the load, which acts against the driving direction whatever
-the slip (Pacejka's vertical shift); a run offset
-:math:`b_i \sim N(0, \tau^2)`, noise e of marginal standard deviation :math:`s_0 + s_1 |f|` that is
-AR(1) after standardising, and the slip errors of `SlipBlocks` entering through the law's slope.
-Their size is an estimate itself, and the speeds do not show all of them (discs run out of true):
-the variance of a block's slip error is :math:`q^2` times the estimate plus
-:math:`\sigma_\kappa^2`. If both were taken as known, the scatter of forces where the curve is steep
-would determine its slope, and bias it.
-Offset, shared slip error and noise are integrated out exactly by a Kalman filter of each run.
+the slip (Pacejka's vertical shift); zeros of traction and load that a run has of its own,
+:math:`b_i, z_i \sim N(0, \tau^2)`; noise e of standard deviation :math:`s_0 m_i` that is AR(1),
+with a size :math:`m_i` of each run (`SlipBlocks.noise_size`). The noise's size is never a function
+of the curve: a curve could explain scatter by bending. Errors of slip and load of `SlipBlocks`
+enter through the law's slopes. The size of the slip errors is an estimate itself, and the speeds do
+not show all of them (discs run out of true): the variance of a block's slip error is :math:`q^2`
+times the estimate plus :math:`\sigma_\kappa^2`. If both were taken as known, the scatter of
+forces where the curve is steep would determine its slope, and bias it. Zeros, shared slip error and
+noise are integrated out exactly by a Kalman filter of each run.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
+from scipy.linalg import solve_triangular, toeplitz
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.averaging.load_rule import load_rule
 from model.bayes.averaging.slip_rule import slip_rule
 from model.bayes.lane_likelihood import lane_log_likelihood
-from model.compiled import compiled
 from model.slip.definition import slip_per_radius_error
 from model.slip.lane_force import lane_law
 from model.slip.law import Parameter, SlipLaw
@@ -52,15 +54,13 @@ NUISANCE = (
     Parameter("slip_scatter", "sigma_kappa", "dimensionless", 0.0, np.inf,
               "standard deviation of a block's slip that the speeds do not show"),
     Parameter("noise_floor", "s_0", "newton", 0.0, np.inf,
-              "noise of a block mean at zero force"),
-    Parameter("noise_slope", "s_1", "dimensionless", 0.0, np.inf,
-              "growth of that noise with force"),
+              "noise of a block mean, of a run of usual noise"),
     Parameter("noise_correlation", "rho", "dimensionless", -1.0, 1.0,
               "correlation of the noise of successive blocks"),
     Parameter("offset_spread", "tau", "newton", 0.0, np.inf,
               "standard deviation of the force offset between runs"),
 )  # fmt: skip
-"""The 12 parameters of the measurement, in their order behind the law's in parameter vectors."""
+"""The 11 parameters of the measurement, in their order behind the law's in parameter vectors."""
 
 
 @dataclass(frozen=True)
@@ -70,12 +70,22 @@ class PredictedForces:
     Attributes:
         force: Expected measured block mean of traction, without run offset [N].
         slope: Slope of `force` over slip, across the spread of slip in the block [N].
-        noise: Marginal standard deviation of the correlated noise, s_0 + s_1 |force| [N].
+        load_slope: Slope of `force` over the true load [-].
+        noise: Marginal standard deviation of the correlated noise [N].
     """
 
     force: Array
     slope: Array
+    load_slope: Array
     noise: Array
+
+    def of_vector(self, index: int) -> "PredictedForces":
+        """Return the predictions by one parameter vector, arrays of shape (n,)."""
+        return PredictedForces(*(getattr(self, each.name)[index] for each in fields(self)))
+
+    def mean(self) -> "PredictedForces":
+        """Average the predictions over the parameter vectors, arrays of shape (n,)."""
+        return PredictedForces(*(getattr(self, each.name).mean(axis=0) for each in fields(self)))
 
 
 def predict_blocks(
@@ -101,13 +111,12 @@ def predict_blocks(
     Args:
         blocks: The block means, n of them.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 12).
+        values: Law and measurement parameters, shape (w, k + 11).
         sine: Whether slip within blocks near zero slip is distributed as a sine wave is.
     """
     k = len(law.parameters)
     law_values = values[:, :k].T[:, :, None]
     g_t, g_n, b_n, c, epsilon, c_r = values[:, k : k + 6].T[:, :, None]
-    s_0, s_1 = values[:, -4:-2].T[:, :, None]
     rule = load_rule(blocks)
     shift = epsilon * slip_per_radius_error(blocks.slip, blocks.definition)
 
@@ -135,8 +144,9 @@ def predict_blocks(
     mean = light + rule.heavy_share * (heavy - light)
     mean = mean + at_one_load * bend
     slope_in_load = (force_at(blocks.slip, rule.heavy) - centre) / up
-    force = mean + slope_in_load / (1 + g_n) * c * mean
-    return PredictedForces(force, slope, s_0 + s_1 * np.abs(force))
+    load_slope = slope_in_load / (1 + g_n)
+    noise = values[:, -3, None] * blocks.noise_size
+    return PredictedForces(mean + load_slope * c * mean, slope, load_slope, noise)
 
 
 def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
@@ -147,7 +157,7 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 12).
+        values: Law and measurement parameters, shape (w, k + 11).
 
     Returns:
         Log density of each run, shape (w, n_runs).
@@ -157,11 +167,20 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
     if known is not None:
         return lane_log_likelihood(blocks, known, values[:, k:])
     predicted = predict_blocks(blocks, law, values)
-    scale, scatter, rho, tau = values[:, -6], values[:, -5], values[:, -2], values[:, -1]
-    return filter_runs(
-        blocks.traction_force - predicted.force, predicted.noise, predicted.slope,
-        blocks.slip_error, blocks.run_slip_error, blocks.run_starts(), scale, scatter, rho, tau,
-    )  # fmt: skip
+    found = np.empty((len(values), blocks.n_runs))
+    for index, vector in enumerate(values):
+        one = predicted.of_vector(index)
+        try:
+            factors = covariance_factors(blocks, one, vector)
+        except np.linalg.LinAlgError:  # numbers beyond what rounding leaves of them
+            found[index] = np.nan
+            continue
+        residual = np.split(blocks.traction_force - one.force, blocks.run_starts()[1:-1])
+        for run, (L, rest) in enumerate(zip(factors, residual, strict=True)):
+            white = solve_triangular(L, rest, lower=True)
+            size = np.log(2 * np.pi) * len(rest) + 2 * np.log(np.diag(L)).sum()
+            found[index, run] = -0.5 * (white @ white + size)
+    return found
 
 
 def slip_errors(blocks: SlipBlocks, values: Array) -> tuple[Array, Array]:
@@ -169,13 +188,44 @@ def slip_errors(blocks: SlipBlocks, values: Array) -> tuple[Array, Array]:
 
     Args:
         blocks: The block means, n of them.
-        values: Law and measurement parameters, shape (k + 12,).
+        values: Law and measurement parameters, shape (k + 11,).
 
     Returns:
         Variances of blocks, shape (n,), and of runs, shape (n_runs,).
     """
-    scale, scatter = values[-6:-4]
+    scale, scatter = values[-5:-3]
     return scale**2 * blocks.slip_error + scatter**2, scale**2 * blocks.run_slip_error
+
+
+def covariance_factors(
+    blocks: SlipBlocks, predicted: PredictedForces, values: Array
+) -> list[Array]:
+    """Return the lower Cholesky factor of each run's covariance, shape (blocks, blocks) [N].
+
+    It is the covariance of noise, run's zeros, slip and load errors; `LinAlgError` is raised if one
+    is singular.
+
+    The matrix is built densely from its definition and not by the likelihood's filter, as a check
+    of the filter.
+
+    Args:
+        blocks: The block means, n of them.
+        predicted: Predictions by one parameter vector, arrays of shape (n,).
+        values: Law and measurement parameters, of which slip errors, the noise's correlation and
+            the zeros' standard deviation are used, shape (k + 11,).
+    """
+    rho, tau = values[-2:]
+    own, shared = slip_errors(blocks, values)
+    starts = blocks.run_starts()
+    factors = []
+    for index in range(blocks.n_runs):
+        part = slice(starts[index], starts[index + 1])
+        s, g, h = (each[part] for each in (predicted.noise, predicted.slope, predicted.load_slope))
+        covariance = np.outer(s, s) * toeplitz(rho ** np.arange(len(s))) + tau**2
+        covariance += np.outer(g, g) * shared[index] + np.outer(h, h) * tau**2
+        covariance += np.diag(g**2 * own[part] + h**2 * blocks.load_error[part])
+        factors.append(np.linalg.cholesky(covariance))
+    return factors
 
 
 def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
@@ -184,63 +234,9 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (w, k + 12).
+        values: Law and measurement parameters, shape (w, k + 11).
 
     Returns:
         Log likelihood of each parameter vector, shape (w,).
     """
     return run_log_likelihood(blocks, law, values).sum(axis=1)
-
-
-@compiled
-def filter_runs(
-    residual, noise, slope, slip_error, run_slip_error, starts, scale, scatter, rho, tau
-):
-    """Compute each run's log density by a Kalman filter, offset and shared slip error integrated.
-
-    State: the standardised noise z, AR(1) with unit variance; observation noise: the block's own
-    slip error times the squared slope. The filter is linear, so it whitens the residual and the
-    two shared directions (1 and slope) together; their Gram matrix then gives the quadratic form
-    and determinant of the run's covariance by the Woodbury identity.
-
-    `residual`, `noise` and `slope` are (w, n), `slip_error` (n,), `run_slip_error` (n_runs,),
-    `starts` (n_runs + 1,), `scale`, `scatter`, `rho` and `tau` (w,); the result is (w, n_runs).
-    """
-    n_walkers, n_runs = residual.shape[0], len(starts) - 1
-    result = np.empty((n_walkers, n_runs))
-    for w in range(n_walkers):
-        q, own = scale[w] ** 2, scatter[w] ** 2
-        for i in range(n_runs):
-            m_r = m_1 = m_g = 0.0
-            variance = 1.0
-            rr = r1 = rg = s11 = s1g = sgg = 0.0
-            log_determinant = 0.0
-            for j in range(starts[i], starts[i + 1]):
-                s, g = noise[w, j], slope[w, j]
-                total = s * s * variance + g * g * (q * slip_error[j] + own)
-                e_r, e_1, e_g = residual[w, j] - s * m_r, 1.0 - s * m_1, g - s * m_g
-                gain = variance * s / total
-                rr += e_r * e_r / total
-                r1 += e_r * e_1 / total
-                rg += e_r * e_g / total
-                s11 += e_1 * e_1 / total
-                s1g += e_1 * e_g / total
-                sgg += e_g * e_g / total
-                log_determinant += np.log(total)
-                m_r = rho[w] * (m_r + gain * e_r)
-                m_1 = rho[w] * (m_1 + gain * e_1)
-                m_g = rho[w] * (m_g + gain * e_g)
-                variance = rho[w] ** 2 * variance * (1 - gain * s) + 1 - rho[w] ** 2
-            d_1, d_g = tau[w] ** 2, q * run_slip_error[i]
-            a, b = 1 + d_1 * s11, d_1 * s1g
-            c, d = d_g * s1g, 1 + d_g * sgg
-            determinant = a * d - b * c
-            x_1 = (d * d_1 * r1 - b * d_g * rg) / determinant
-            x_g = (a * d_g * rg - c * d_1 * r1) / determinant
-            # Where noise is far below everything else, the difference cancels to rounding
-            # errors of either sign; these are its lower bound.
-            quadratic = max(rr - r1 * x_1 - rg * x_g, 1e-14 * rr)
-            size = starts[i + 1] - starts[i]
-            log_determinant += np.log(determinant)
-            result[w, i] = -0.5 * (quadratic + log_determinant + size * np.log(2 * np.pi))
-    return result

@@ -69,7 +69,6 @@ def default_priors(
         "slip_error_scale": LogNormal(1.0, 0.5),
         "slip_scatter": HalfNormal(rig_errors.slip_scatter),
         "noise_floor": LogNormal(0.02 * force_scale, 1.5),
-        "noise_slope": HalfNormal(0.05),
         "noise_correlation": Uniform(-0.5, 0.99),
         "offset_spread": HalfNormal(load_cell.zero_stability),
     }
@@ -158,7 +157,7 @@ class SlipPosterior:
         return np.quantile(self.blocks.normal_force, [0.0, 0.25, 0.5, 0.75, 1.0])
 
     def values(self, z: Array) -> Array:
-        """Map coordinates z (w, d) to values of all parameters, fixed ones too, (w, k + 12)."""
+        """Map coordinates z (w, d) to values of all parameters, fixed ones too, (w, k + 11)."""
         return self._values(self.prior_coordinates(z))
 
     def _values(self, independent: Array) -> Array:
@@ -200,7 +199,7 @@ class SlipPosterior:
             return self._prior_and_values(z)[0]
 
     def _prior_and_values(self, z: Array) -> tuple[Array, Array]:
-        """Compute the log prior density (w,) and the values (w, k + 12) at z (w, d)."""
+        """Compute the log prior density (w,) and the values (w, k + 11) at z (w, d)."""
         independent = self.prior_coordinates(z)
         values = self._values(independent)
         law_values = values[:, : len(self.law.parameters)].T[:, :, None]
@@ -229,7 +228,7 @@ class SlipPosterior:
         return self.run_log_likelihood_of(self.values(z))
 
     def run_log_likelihood_of(self, values: Array) -> Array:
-        """Compute the log likelihood of each run's blocks given values (w, k + 12), (w, n_runs)."""
+        """Compute the log likelihood of each run's blocks given values (w, k + 11), (w, n_runs)."""
         return run_log_likelihood(self.blocks, self.law, values)
 
     def without_runs(self, left_out: NDArray[np.bool_]) -> "SlipPosterior":

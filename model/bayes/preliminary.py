@@ -1,88 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""Preliminary least-squares fit: starting points, and choice of the block length."""
+"""Choice of how many samples are averaged in a block, by the residuals of a plain fit."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from model.arrays import Array
-from model.bayes.averaging.blocks import SlipBlocks, block_means
+from model.bayes.averaging.blocks import block_means
 from model.bayes.averaging.fast_wander import FastWander, fast_wander
 from model.bayes.averaging.slip_noise import slip_noise_variance
-from model.bayes.priors import Prior
-from model.errors import FitError
-from model.slip.law import SlipLaw
+from model.bayes.plain_fit import PlainFit
 from model.slip.samples import SlipSamples
 
-N_TRIALS = 400  # prior draws that are tried as starts
-N_CLIMBS = 5  # best of them that are optimised
 MAX_BLOCKS = 3000  # largest number of blocks
 MAX_SLIP_SPREAD = 0.45  # of the slip scale within a block; more, and the quadrature is biased
 MIN_BLOCKS_PER_RUN = 5
+MOST_SETTLED = 6000  # blocks, from which on no more are tried
+MOVED = 0.2  # of a standard deviation, by which twice as many blocks may move the plain fit
+NOISY = 0.3  # noise of a block's slip over the slip scale, above which blocks are not halved
 MEMORIES = 2  # correlation times in a block: means over shorter ones are not an AR(1) process
-
-
-def least_squares_values(
-    blocks: SlipBlocks, law: SlipLaw, *, priors: dict[str, Prior], rng: np.random.Generator
-) -> Array:
-    """Fit a law's parameters to block means by robust least squares from many starts.
-
-    Of `N_TRIALS` prior draws and the prior median, as far as valid, the best `N_CLIMBS` are
-    optimised. Of the valid results, and the best draw, the one with the least sum of absolute
-    scaled residuals and coordinates is returned.
-
-    Args:
-        blocks: The block means.
-        law: The slip law.
-        priors: Priors of the law's parameters by name; they regularise weakly.
-        rng: Source of randomness of the starting points, which are prior draws.
-
-    Returns:
-        Values of the law's k parameters, valid at the measured loads, shape (k,).
-
-    Raises:
-        FitError: No prior draw is valid at the measured loads, or a residual overflowed.
-    """
-    chosen = [priors[p.name] for p in law.parameters]
-    scale = float(np.std(blocks.traction_force)) / 20
-
-    def values(z: Array) -> Array:
-        """Map coordinates z (k,) to values of the law's parameters (k,)."""
-        return np.array([prior.value(x) for prior, x in zip(chosen, z, strict=True)])
-
-    def misfit(z: Array) -> Array:
-        """Return the n scaled residuals, then z, standard normal a priori, shape (n + k,)."""
-        with np.errstate(all="ignore"):
-            force = law.force(blocks.slip, blocks.normal_force, values(z))
-        # A trial may be beyond all numbers: NaN counts as no force, infinity as the largest float.
-        return np.append((blocks.traction_force - np.nan_to_num(force)) / scale, z)
-
-    def valid(z: Array) -> bool:
-        """Return whether the law is valid at z at each of `loads`."""
-        with np.errstate(all="ignore"):
-            return bool(np.all(law.valid(loads, values(z))))
-
-    loads = np.quantile(blocks.normal_force, [0.0, 0.25, 0.5, 0.75, 1.0])
-    trials = np.vstack([np.zeros(len(chosen)), rng.standard_normal((N_TRIALS, len(chosen)))])
-    ranked = sorted(filter(valid, trials), key=lambda z: float(np.abs(misfit(z)).sum()))
-    if not ranked:
-        raise FitError(
-            f"no parameters within the priors of the law '{law.name}' are valid at loads of "
-            f"{loads[0]:g} to {loads[-1]:g} N; check the unit of the load"
-        )
-    try:
-        climbs = [
-            least_squares(misfit, z, loss="soft_l1", max_nfev=100).x for z in ranked[:N_CLIMBS]
-        ]
-    except ValueError as error:  # raised by scipy where a residual overflows
-        raise FitError(
-            f"no curve of '{law.name}' comes near a traction force of up to "
-            f"{np.abs(blocks.traction_force).max():.3g} N at loads of {loads[0]:.3g} to "
-            f"{loads[-1]:.3g} N ({error}); check their units"
-        ) from error
-    candidates = [*filter(valid, climbs), ranked[0]]
-    return values(min(candidates, key=lambda z: float(np.abs(misfit(z)).sum())))
 
 
 def correlation_time(residual: Array, slices: list[slice], *, white: Array) -> float:
@@ -142,46 +78,36 @@ class BlockChoice:
 
 
 def choose_block_length(
-    samples: SlipSamples,
-    law: SlipLaw,
-    *,
-    priors: dict[str, Prior],
-    rng: np.random.Generator,
-    length: int | None = None,
+    samples: SlipSamples, plain: PlainFit, *, length: int | None = None
 ) -> BlockChoice:
-    """Choose how many samples to average in a block, from residuals of a preliminary fit.
+    """Choose how many samples to average in a block, from the residuals of a plain fit.
 
     A block is at least `MEMORIES` autocorrelation times of the residuals long, long enough that the
     slip sensors' noise averages to a tenth of the curve's slip scale (the slip at which its initial
     slope reaches its largest force), and that there are at most 3,000 blocks. The slip sensors'
-    white noise is no part of that time: the likelihood has it apart. Two limits override these: a
-    run of median length keeps 5 blocks, and the standard deviation of true slip in nine of ten
-    blocks is at most 0.45 slip scales. The length is 1 at least.
+    white noise is no part of that time: the likelihood has it apart. What it does to the answer
+    overrides these: a run of median length keeps 5 blocks, the standard deviation of true slip in
+    nine of ten blocks is at most 0.45 slip scales, and twice as many blocks would move slope and
+    force of the plain fit by less than `MOVED` of their standard deviation; down to single samples.
 
     Args:
         samples: The samples.
-        law: The slip law of the preliminary fit.
-        priors: Priors of the law's parameters by name.
-        rng: Source of randomness of the preliminary fit.
+        plain: The plain fit of them.
         length: The length where it is not to be chosen, but only the noise of slip looked at.
-
-    Raises:
-        FitError: The preliminary fit failed, as `least_squares_values` says.
     """
     run_length = int(np.median([part.stop - part.start for part in samples.slices()]))
     longest = max(1, run_length // MIN_BLOCKS_PER_RUN)
-    coarse = block_means(samples, max(1, min(longest, len(samples) // 1000)))
-    values = least_squares_values(coarse, law, priors=priors, rng=rng)
-    residual = samples.traction_force - law.force(samples.slip, samples.normal_force, values)
+    slip = plain.true_slip(samples.slip)
+    residual = plain.residual(samples.slip, samples.normal_force, samples.traction_force)
     slip_noise = slip_noise_variance(samples)
-    slope = law.slip_derivative(samples.slip, samples.normal_force, values)
+    slope = plain.law.slip_derivative(slip, samples.normal_force, plain.values)
     wander = fast_wander(samples, residual, slope)
     if length is not None:
         return BlockChoice(length, None, "as asked for", wander)
     correlation = correlation_time(
         residual, samples.slices(), white=slope**2 * slip_noise[samples.run]
     )
-    slip_scale = _slip_scale(law, values, float(np.median(samples.normal_force)))
+    slip_scale = plain.slip_scale
     noise = float(np.median(slip_noise))
     wanted = {
         "twice the correlation time of the noise": int(np.ceil(MEMORIES * correlation)),
@@ -194,22 +120,11 @@ def choose_block_length(
     steady = _steady_length(samples, chosen, MAX_SLIP_SPREAD * slip_scale)
     if steady < chosen:
         reason, chosen = "so that slip changes little within a block", steady
+    least = int(np.ceil(noise / (NOISY * slip_scale) ** 2))
+    settled = _settled_length(samples, plain, chosen, least)
+    if settled < chosen:
+        reason, chosen = "so that more blocks hardly move the plain fit", settled
     return BlockChoice(chosen, correlation, reason, wander)
-
-
-def _slip_scale(law: SlipLaw, values: Array, load: float) -> float:
-    """Compute the slip at which a line of the initial slope reaches the largest force [-].
-
-    That is the largest force at slip ratios of 1e-4 to 1.
-
-    Args:
-        law: The slip law.
-        values: Parameters of the law, shape (k,).
-        load: Normal force [N].
-    """
-    slip = np.geomspace(1e-4, 1.0, 200)
-    largest = float(np.max(law.force(slip, load, values)))
-    return largest / float(law.slip_derivative(0.0, load, values))
 
 
 def _steady_length(samples: SlipSamples, length: int, largest_spread: float) -> int:
@@ -225,4 +140,24 @@ def _steady_length(samples: SlipSamples, length: int, largest_spread: float) -> 
         if np.quantile(wander, 0.9) <= largest_spread:
             break
         length = max(1, length // 2)
+    return length
+
+
+def _settled_length(samples: SlipSamples, plain: PlainFit, length: int, least: int) -> int:
+    """Halve a block length until that moves the plain fit by less than `MOVED`, but to no less.
+
+    Args:
+        samples: The samples.
+        plain: The plain fit of them.
+        length: Number of samples in a block to start from.
+        least: Least number, in the mean of which the noise of slip is small.
+    """
+    if plain.of_run_means or not len(plain.draws):
+        return length
+    blocks = block_means(samples, length)
+    while length // 2 >= max(least, 1):
+        shorter = block_means(samples, length // 2)
+        if plain.moved(blocks, shorter) < MOVED or len(shorter) > MOST_SETTLED:
+            break
+        length, blocks = length // 2, shorter
     return length

@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular, toeplitz
+from scipy.linalg import solve_triangular
 from scipy.special import fdtrc, fdtri, ndtri
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.averaging.load_levels import load_levels, nearest_level
-from model.bayes.likelihood import PredictedForces, predict_blocks, slip_errors
+from model.bayes.likelihood import PredictedForces, covariance_factors, predict_blocks
 from model.slip.law import SlipLaw
 
 SLIP_BINS = 8
@@ -65,7 +65,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 12).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 11).
 
     Raises:
         LinAlgError: The covariance of a run's blocks is singular.
@@ -74,9 +74,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
 
     predicted = predict_blocks(blocks, law, values)
     residual = blocks.traction_force - predicted.force.mean(axis=0)
-    factors = covariance_factors(
-        blocks, predicted.slope.mean(axis=0), predicted.noise.mean(axis=0), values.mean(axis=0)
-    )
+    factors = covariance_factors(blocks, predicted.mean(), values.mean(axis=0))
     score = _run_scores(blocks, residual, factors, blocks.run_mean(predicted.force).std(axis=0))
     inside = int(np.sum(np.abs(score) <= ndtri(0.95)))
     whitened = _whiten(blocks, residual, factors)
@@ -95,38 +93,6 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
         rmse=float(np.sqrt(np.mean(residual**2))),
         rmse_over_load=float(np.sqrt(np.mean((residual / blocks.normal_force) ** 2))),
     )
-
-
-def covariance_factors(
-    blocks: SlipBlocks, slope: Array, noise: Array, values: Array
-) -> list[Array]:
-    """Return the lower Cholesky factor of each run's covariance, shape (blocks, blocks) [N].
-
-    It is the covariance of noise, run offset and slip errors; `LinAlgError` is raised if one is
-    singular.
-
-    The matrix is built densely from its definition and not by the likelihood's filter, as a check
-    of the filter.
-
-    Args:
-        blocks: The block means, n of them.
-        slope: Slope of force over slip of each block, shape (n,) [N].
-        noise: Standard deviation of the noise of each block, shape (n,) [N].
-        values: Law and measurement parameters, of which slip errors, the noise's correlation and
-            the offset's standard deviation are used, shape (k + 12,).
-    """
-    rho, tau = values[-2:]
-    own, shared = slip_errors(blocks, values)
-    starts = blocks.run_starts()
-    factors = []
-    for index in range(blocks.n_runs):
-        part = slice(starts[index], starts[index + 1])
-        s, g = noise[part], slope[part]
-        covariance = np.outer(s, s) * toeplitz(rho ** np.arange(len(s))) + tau**2
-        covariance += np.outer(g, g) * shared[index]
-        covariance += np.diag(g**2 * own[part])
-        factors.append(np.linalg.cholesky(covariance))
-    return factors
 
 
 def _whiten(blocks: SlipBlocks, residual: Array, factors: list[Array]) -> Array:

@@ -42,7 +42,7 @@ def sampled_rise(blocks: SlipBlocks, law: SlipLaw, values: Array) -> SampledRise
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 12).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 11).
     """
     levels = load_levels(blocks)
     k = len(law.parameters)

@@ -26,6 +26,7 @@ from model.bayes.averaging.blocks import block_means
 from model.bayes.checks.raw import raw_residuals
 from model.bayes.drawing.laplace import Laplace, find_mode
 from model.bayes.fit import CLEAR_WIN, not_identified
+from model.bayes.plain_fit import plain_fit
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import SlipLaw
@@ -126,7 +127,12 @@ def find_run_out(
     for _ in range(PASSES):
         corrected = _corrected(samples, coefficients)
         posterior = _posterior(corrected, law, load_cell, rig_errors)
-        starts = starting_points(posterior, rng)[:2] if starts is None else starts
+        if starts is None:
+            plain = plain_fit(
+                corrected, law, priors=posterior.priors, rng=rng,
+                zero_sd=max(rig_errors.radius_ratio, 1e-9),
+            )  # fmt: skip
+            starts = starting_points(posterior, plain, rng)[:2]
         curve = find_mode(posterior.log_density, starts)
         starts = curve.mode[None]
         system = _system(corrected, posterior, curve, length)

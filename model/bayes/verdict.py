@@ -146,7 +146,7 @@ def judge(
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 12).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 11).
         contraction: 1 - posterior variance over prior variance of each sampled parameter, by
             name [-].
         convergence: Convergence diagnostics of the sampler.

@@ -21,9 +21,8 @@ import numpy as np
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.checks.linear import STEP, whiten
-from model.bayes.likelihood import PredictedForces, predict_blocks, slip_errors
+from model.bayes.likelihood import PredictedForces, covariance_factors, predict_blocks, slip_errors
 from model.bayes.posterior import SlipPosterior
-from model.bayes.residuals import covariance_factors
 from model.errors import InsufficientData
 
 
@@ -39,6 +38,7 @@ class Conditions:
         slip_wander: Variance of the true slip within a block [-].
         slip_error: Variance of the error of a block's slip [-].
         run_slip_error: Variance of the error of slip that the blocks of a run share [-].
+        load_error: Standard deviation of the error of a block's load over the load [-].
     """
 
     length: float
@@ -48,6 +48,7 @@ class Conditions:
     slip_wander: float
     slip_error: float
     run_slip_error: float
+    load_error: float
 
 
 def conditions_of(blocks: SlipBlocks) -> Conditions:
@@ -61,6 +62,7 @@ def conditions_of(blocks: SlipBlocks) -> Conditions:
         slip_wander=float(np.median(blocks.slip_wander)),
         slip_error=float(np.median(blocks.slip_error)),
         run_slip_error=float(np.median(blocks.run_slip_error)),
+        load_error=float(np.median(np.sqrt(blocks.load_error) / load)),
     )
 
 
@@ -90,6 +92,8 @@ def planned_blocks(
         load_skewness=np.full(n, conditions.load_skewness),
         slip_load_covariance=np.zeros(n),
         run_slip_error=np.full(n, conditions.run_slip_error),
+        load_error=(conditions.load_error * load) ** 2,
+        noise_size=np.ones(n),
     )
 
 
@@ -130,14 +134,13 @@ def _linear(
 
     Returns:
         Predictions at z (n,), their derivative by the coordinates (n, d) [N], and the values of
-        the k parameters of the law and 12 of the measurement at z (k + 12,).
+        the k parameters of the law and 11 of the measurement at z (k + 11,).
     """
     d = len(z)
     values = posterior.values(_around(z))
     every = predict_blocks(blocks, posterior.law, values)
     derivative = (every.force[1 : d + 1] - every.force[d + 1 :]).T / (2 * STEP)
-    centre = PredictedForces(every.force[0], every.slope[0], every.noise[0])
-    return centre, derivative, values[0]
+    return every.of_vector(0), derivative, values[0]
 
 
 def measured_information(posterior: SlipPosterior, z: Array) -> Array:
@@ -153,7 +156,7 @@ def measured_information(posterior: SlipPosterior, z: Array) -> Array:
     found = []
     for each in z:
         centre, derivative, values = _linear(posterior, posterior.blocks, each)
-        factors = covariance_factors(posterior.blocks, centre.slope, centre.noise, values)
+        factors = covariance_factors(posterior.blocks, centre, values)
         white = whiten(posterior.blocks, derivative, factors)
         found.append(white.T @ white)
     return np.stack(found)
@@ -187,10 +190,12 @@ def run_roots(
         own, common = slip_errors(blocks, values)
         rho, tau = float(values[-2]), float(values[-1])
         sizes = white_sizes(
-            centre.noise, centre.slope**2 * own, rho=rho, most=int(np.ceil(n_blocks.max()))
-        )
+            centre.noise, centre.slope**2 * own + centre.load_slope**2 * blocks.load_error,
+            rho=rho, most=int(np.ceil(n_blocks.max())),
+        )  # fmt: skip
         size = np.stack([_between(sizes, n) for n in n_blocks])
-        size = size / (1 + size * (tau**2 + centre.slope**2 * common * shared[:, None]))
+        zeros = tau**2 * (1 + centre.load_slope**2)
+        size = size / (1 + size * (zeros + centre.slope**2 * common * shared[:, None]))
         found.append(np.sqrt(size)[..., None] * derivative)
     return np.stack(found)
 
@@ -200,7 +205,7 @@ def white_sizes(noise: Array, scatter: Array, *, rho: float, most: int) -> Array
 
     This is the information on a constant that moves all n blocks of a run alike. S is the
     covariance of AR(1) noise and independent scatter; the Kalman filter is that of
-    `model.bayes.likelihood.filter_runs`.
+    `model.bayes.compiled_likelihood.filter_run`.
 
     Args:
         noise: Standard deviation of the AR(1) noise of each run's blocks, shape (r,) [N].

@@ -26,6 +26,7 @@ from model.bayes.averaging.blocks import block_means
 from model.bayes.drawing.tails import approximate
 from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import not_identified
+from model.bayes.plain_fit import fit_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.errors import FitError
 from model.slip.rig_errors import USUAL
@@ -74,7 +75,8 @@ def ranks(index: int, fixed: dict[str, float]) -> dict[str, int] | None:
     blocks = simulate_blocks(posterior().blocks, THESIS_LAW, truth, rng=rng)
     fitted = replace(posterior(**fixed), blocks=blocks)
     try:
-        starts = starting_points(fitted, rng)[:STARTS]
+        plain = fit_blocks(blocks, THESIS_LAW, priors=fitted.priors, zero_sd=0.01, rng=rng)
+        starts = starting_points(fitted, plain, rng)[:STARTS]
         fitted, modes = straightened(fitted, approximate(fitted.log_density, starts), rng)
         found = weighted_draws(fitted.log_density, modes, n=DRAWS, wanted=ENOUGH, rng=rng)
     except (FitError, np.linalg.LinAlgError, ArithmeticError):

@@ -41,7 +41,7 @@ def blocks_at(set_points: np.ndarray, *, loads=(6.0, 12.0), per_run: int = 6) ->
         run_names=tuple("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"[:n_runs]),
         definition=SlipDefinition.MATERIAL, slip_wander=zeros, slip_error=zeros,
         load_variance=zeros, load_skewness=zeros, slip_load_covariance=zeros,
-        run_slip_error=np.zeros(n_runs),
+        run_slip_error=np.zeros(n_runs), load_error=zeros, noise_size=zeros + 1,
     )  # fmt: skip
 
 

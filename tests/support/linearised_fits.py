@@ -22,7 +22,6 @@ SLIPS = (*(-s for s in HALF[::-1]), *HALF)
 MEASURED = {
     "slip_error_scale": 1.0,
     "noise_floor": 0.03,
-    "noise_slope": 0.01,
     "noise_correlation": 0.1,
     "offset_spread": 0.05,
 }
@@ -60,6 +59,8 @@ def linearised(
     """Linearise around the truth, and what was found of the rig, the fit of changed samples."""
     samples = change(sound_sweep().samples)
     blocks = block_means(samples, choice.length, wander_share=choice.wander_share)
+    force = np.abs(blocks.run_mean(blocks.traction_force))[blocks.run]
+    blocks = replace(blocks, noise_size=1 + force / 3)  # as it is simulated
     posterior = SlipPosterior(
         blocks, THESIS_LAW, default_priors(THESIS_LAW, blocks, LoadCell(zero_stability=0.1)), fixed
     )

@@ -41,7 +41,7 @@ def simulate_blocks(
     Args:
         layout: The blocks; their traction is not used.
         law: The slip law, of k parameters.
-        values: Values of the law's and the measurement's parameters, shape (k + 12,).
+        values: Values of the law's and the measurement's parameters, shape (k + 11,).
         rng: Source of randomness.
 
     Returns:
@@ -63,7 +63,7 @@ def _mean_traction(layout: SlipBlocks, law: SlipLaw, values: Array, slip: Array)
     Args:
         layout: The blocks.
         law: The slip law.
-        values: Values of all parameters, shape (k + 12,).
+        values: Values of all parameters, shape (k + 11,).
         slip: True mean slip of each block by the stated radii, shape (n,) [-].
     """
     k = len(law.parameters)

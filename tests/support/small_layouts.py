@@ -32,6 +32,8 @@ def layout(n_runs=12, blocks_a_run=3, *, wander=0.0, error=0.0, load_sd=0.0, ske
         load_skewness=np.full(n, skewness),
         slip_load_covariance=np.zeros(n),
         run_slip_error=np.full(n_runs, error**2),
+        load_error=np.zeros(n),
+        noise_size=np.ones(n),
     )
 
 

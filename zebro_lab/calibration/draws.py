@@ -22,8 +22,9 @@ MOST_DRAWS: Final = 4_000_000
 
 BLOCK_MOMENTS = (
     "slip_wander", "slip_error", "load_variance", "load_skewness", "slip_load_covariance",
+    "load_error", "noise_size",
 )  # fmt: skip
-"""Moments of slip and load within a block, as `SlipBlocks` has them."""
+"""Moments of slip and load within a block, and sizes of errors, as `SlipBlocks` has them."""
 
 
 def read_draws_of(

@@ -31,7 +31,7 @@ _OPTION: Final = "--prior"
 
 
 NOISE: Final = (
-    "slip_error_scale", "slip_scatter", "noise_floor", "noise_slope", "noise_correlation",
+    "slip_error_scale", "slip_scatter", "noise_floor", "noise_correlation",
 )  # fmt: skip
 """Parameters of the errors of block means, which hold for one block length."""
 

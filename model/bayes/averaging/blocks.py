@@ -45,6 +45,9 @@ class SlipBlocks:
         slip_load_covariance: Covariance of slip and load within the block, shape (n,) [N].
         run_slip_error: Variance of the error of `slip` that all blocks of a run share, shape
             (n_runs,) [-].
+        load_error: Variance of the error of `normal_force`, independent between blocks, shape (n,)
+            [N^2].
+        noise_size: Size of the noise of traction over that of the usual run, shape (n,) [-].
     """
 
     slip: Array
@@ -60,6 +63,8 @@ class SlipBlocks:
     load_skewness: Array
     slip_load_covariance: Array
     run_slip_error: Array
+    load_error: Array
+    noise_size: Array
 
     def __len__(self) -> int:
         """Return the number of blocks."""
@@ -106,7 +111,7 @@ class SlipBlocks:
 
 _PER_BLOCK = (
     "slip", "normal_force", "traction_force", "count", "slip_wander", "slip_error",
-    "load_variance", "load_skewness", "slip_load_covariance",
+    "load_variance", "load_skewness", "slip_load_covariance", "load_error", "noise_size",
 )  # fmt: skip
 
 
@@ -148,6 +153,8 @@ def block_means(samples: SlipSamples, length: int, *, wander_share: float = 0.0)
         load_skewness=_skewness(found.load_third, load_variance),
         slip_load_covariance=covariance,
         run_slip_error=run_slip_error,
+        load_error=np.zeros(len(load)),
+        noise_size=np.ones(len(load)),
     )
 
 

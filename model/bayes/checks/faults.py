@@ -32,7 +32,7 @@ DELAY_SPANS = (1, 2, 4, 8, 16)  # samples over which slip is seen to change
 DELAY_P = 2e-4  # of each of five spans: one sound set in 1,000 fails
 FAR_PRIOR = 4.0  # standard deviations of a prior, beyond which a value is implausible
 NOISE = {
-    "slip_error_scale", "slip_scatter", "noise_floor", "noise_slope", "noise_correlation",
+    "slip_error_scale", "slip_scatter", "noise_floor", "noise_correlation",
     "offset_spread",
 }  # fmt: skip
 

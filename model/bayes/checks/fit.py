@@ -42,7 +42,7 @@ def offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> Ch
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 12).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 11).
         scale: Scale of the prior on the run offsets' spread [N].
     """
     name = "zero offsets between runs are small"

@@ -29,9 +29,8 @@ from scipy.special import stdtr
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
-from model.bayes.likelihood import PredictedForces, predict_blocks
+from model.bayes.likelihood import PredictedForces, covariance_factors, predict_blocks
 from model.bayes.posterior import SlipPosterior
-from model.bayes.residuals import covariance_factors
 from model.slip.law import SlipLaw
 
 STEP = 1e-3  # of a coordinate, whose prior has unit scale
@@ -74,7 +73,7 @@ class Linearised:
         basis: Orthonormal basis of the columns of A, shape (n + d + 1, d + 1) [-].
         triangle: A in that basis, upper triangular, shape (d + 1, d + 1) [-].
         rest: r without what the fit could absorb, shape (n + d + 1,) [-].
-        values: Law and measurement parameters at the centre, shape (k + 12,).
+        values: Law and measurement parameters at the centre, shape (k + 11,).
         z: Coordinates of the centre, shape (d,).
     """
 
@@ -153,10 +152,10 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
     values = posterior.values(around)
     blocks, law = posterior.blocks, posterior.law
     every = predict_blocks(blocks, law, values)
-    predicted = PredictedForces(every.force[0], every.slope[0], every.noise[0])
+    predicted = every.of_vector(0)
     d = len(centre)
     jacobian = (every.force[1 : d + 1] - every.force[d + 1 :]).T / (2 * STEP)
-    factors = covariance_factors(blocks, every.slope[0], every.noise[0], values[0])
+    factors = covariance_factors(blocks, predicted, values[0])
     residual = blocks.traction_force - predicted.force
     ripple = predict_blocks(blocks, law, values[:1], sine=True).force[0] - predicted.force
     white = whiten(blocks, np.column_stack([residual, jacobian, ripple]), factors)

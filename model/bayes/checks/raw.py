@@ -68,7 +68,7 @@ def raw_residuals(samples: SlipSamples, law: SlipLaw, values: Array) -> tuple[Ar
     Args:
         samples: The samples, n of them.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (k + 12,).
+        values: Law and measurement parameters, shape (k + 11,).
 
     Returns:
         Residuals and slopes, shape (n,) each [N].
@@ -91,7 +91,7 @@ def reach_of_slip_noise(samples: SlipSamples, law: SlipLaw, values: Array) -> Ar
     Args:
         samples: The samples, n of them.
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (k + 12,).
+        values: Law and measurement parameters, shape (k + 11,).
 
     Returns:
         Changes of force, shape (n,) [N].

@@ -145,7 +145,7 @@ def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 12).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 11).
     """
     return float(np.max(largest_slips(blocks) / _peaks(blocks, law, values)))
 

@@ -11,6 +11,7 @@ from model.bayes.averaging.blocks import block_means
 from model.bayes.drawing.laplace import LaplaceMixture
 from model.bayes.drawing.tails import approximate
 from model.bayes.drawing.weighted import importance_draws
+from model.bayes.plain_fit import fit_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip import MagicFormula
 from rig.slip_rig.imperfections import TYPICAL_RIG
@@ -40,10 +41,13 @@ def one_sided():
 
 def test_searches_of_few_blocks_start_in_the_prior_too(one_sided):
     posterior, _ = one_sided
-    many = starting_points(posterior, np.random.default_rng(1))
+    plain = fit_blocks(
+        posterior.blocks, LAW, priors=posterior.priors, zero_sd=0.01, rng=np.random.default_rng(1)
+    )
+    many = starting_points(posterior, plain, np.random.default_rng(1))
     first = np.zeros(posterior.blocks.n_runs, dtype=bool)
     first[::4] = True
-    few = starting_points(posterior.without_runs(~first), np.random.default_rng(1))
+    few = starting_points(posterior.without_runs(~first), plain, np.random.default_rng(1))
     assert len(posterior.blocks) < FEW_BLOCKS
     assert few.shape[1] == many.shape[1] == len(posterior.free)
     assert np.isfinite(posterior.log_density(few)).all()

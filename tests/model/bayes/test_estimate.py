@@ -28,7 +28,7 @@ from model.slip.magic_formula import peak_slip
 ANY = Parameter("x", "x", "newton", -math.inf, math.inf, "anything")
 RNG = np.random.default_rng(3)
 CONVERGENCE = Convergence(
-    0, 1000, *([np.ones(12)] * 2), *([np.full(12, 5e3)] * 2), np.full(12, 0.01)
+    0, 1000, *([np.ones(11)] * 2), *([np.full(11, 5e3)] * 2), np.full(11, 0.01)
 )
 
 
@@ -41,7 +41,7 @@ def posterior() -> SlipPosterior:
         traction_force=np.full(n, 1.5), count=np.full(n, 10), run=np.repeat([0, 1], 4),
         run_names=("a", "b"), definition=SlipDefinition.MATERIAL, slip_wander=zeros,
         slip_error=zeros, load_variance=zeros, load_skewness=zeros, slip_load_covariance=zeros,
-        run_slip_error=np.zeros(2),
+        run_slip_error=np.zeros(2), load_error=zeros, noise_size=np.ones(n),
     )  # fmt: skip
     law = Brush()
     priors = default_priors(law, blocks, LoadCell())
@@ -112,10 +112,10 @@ def test_thinned_draws_lie_behind_the_burn_in_and_keep_their_ensemble():
         z, z[..., 0], np.ones(4), 5, np.zeros((4, 624), dtype=np.uint32), np.zeros(4, dtype=int)
     )
     ones = np.ones(d)
-    kept = thin_draws(posterior(), chains, Convergence(8, 12, *[ones] * 5), n=30)
+    kept = thin_draws(posterior(), chains, Convergence(8, 11, *[ones] * 5), n=30)
     assert kept.z.shape == (4, 30, d)
-    assert kept.values.shape == (4, 30, 2 + 12)
-    assert kept.flat.shape == (120, 2 + 12)
+    assert kept.values.shape == (4, 30, 2 + 11)
+    assert kept.flat.shape == (120, 2 + 11)
     for ensemble in range(4):
         assert np.all(kept.z[ensemble] == ensemble / 10)
     np.testing.assert_array_equal(kept.log_density, kept.z[..., 0])

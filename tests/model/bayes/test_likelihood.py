@@ -25,7 +25,7 @@ SIZES = (1, 4, 9, 1, 6)
 
 
 def parameters(**nuisance):
-    """Return one parameter vector, shape (1, k + 12), of 0 unless named.
+    """Return one parameter vector, shape (1, k + 11), of 0 unless named.
 
     Noise is 0.1 N, and slip errors are as estimated.
     """
@@ -50,6 +50,8 @@ def blocks(sizes=SIZES, seed=0, **replaced):
         load_skewness=np.zeros(n),
         slip_load_covariance=np.zeros(n),
         run_slip_error=np.zeros(len(sizes)),
+        load_error=np.zeros(n),
+        noise_size=np.ones(n),
     )
     return replace(exact, **replaced)
 
@@ -71,7 +73,10 @@ def blurred_blocks(sizes=SIZES, seed=0):
     own = rng.uniform(0.0, 1e-4, n) * (rng.random(n) < 0.7)
     shared = rng.uniform(0.0, 1e-4, len(sizes)) * (rng.random(len(sizes)) < 0.7)
     wander = rng.uniform(0.0, 1e-4, n)
-    return blocks(sizes, seed, slip_error=own, run_slip_error=shared, slip_wander=wander)
+    return blocks(
+        sizes, seed, slip_error=own, run_slip_error=shared, slip_wander=wander,
+        load_error=rng.uniform(0, 0.01, sum(sizes)), noise_size=rng.uniform(0.5, 2, sum(sizes)),
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e10, 4e14])
@@ -92,11 +97,14 @@ def dense_covariances(data, predicted, *, rho, tau, scale=1.0, scatter=0.0):
     for run in range(data.n_runs):
         rows = data.run == run
         s, g = predicted.noise[0, rows], predicted.slope[0, rows]
+        h = predicted.load_slope[0, rows]
         powers = np.power(rho, np.arange(len(s)), dtype=float)  # 0**0 is 1: white noise
         correlated = np.diag(s) @ toeplitz(powers) @ np.diag(s)
-        offset = tau**2 * np.ones((len(s), len(s)))
+        offset = tau**2 * (np.ones((len(s), len(s))) + np.outer(h, h))
         shared_error = scale**2 * data.run_slip_error[run] * np.outer(g, g)
-        own_error = np.diag(g**2 * (scale**2 * data.slip_error[rows] + scatter**2))
+        own_error = np.diag(
+            g**2 * (scale**2 * data.slip_error[rows] + scatter**2) + h**2 * data.load_error[rows]
+        )
         covariances.append(correlated + offset + shared_error + own_error)
     return covariances
 
@@ -104,7 +112,7 @@ def dense_covariances(data, predicted, *, rho, tau, scale=1.0, scatter=0.0):
 def dense_log_densities(data, values):
     predicted = predict_blocks(data, LAW, values)
     residual = data.traction_force - predicted.force[0]
-    scale, scatter, *_, rho, tau = values[0, -6:]
+    scale, scatter, *_, rho, tau = values[0, -5:]
     covariances = dense_covariances(data, predicted, rho=rho, tau=tau, scale=scale, scatter=scatter)
     return [
         multivariate_normal(cov=covariance).logpdf(residual[data.run == run])
@@ -120,7 +128,6 @@ def dense_log_densities(data, values):
     rho=st.one_of(st.just(0.0), st.floats(-0.95, 0.98)),
     tau=st.one_of(st.just(0.0), st.floats(0.0, 2.0)),
     noise_floor=st.floats(0.02, 1.0),
-    noise_slope=st.floats(0.0, 0.3),
     gain=st.floats(-0.1, 0.1),
     bias=st.floats(-0.5, 0.5),
     crosstalk=st.floats(-0.1, 0.1),
@@ -132,7 +139,6 @@ def test_the_filter_is_the_dense_gaussian_of_the_definition(seed, rho, tau, gain
         gain_traction=gain,
         gain_normal=-gain,
         noise_floor=other["noise_floor"],
-        noise_slope=other["noise_slope"],
         bias_normal=other["bias"],
         crosstalk=other["crosstalk"],
     )
@@ -184,9 +190,8 @@ def test_a_likelihood_of_all_runs_is_one_gaussian_of_blocks_on_a_diagonal():
 
 
 @pytest.mark.parametrize("crosstalk", [-0.3, 0.0, 0.3])
-@pytest.mark.parametrize("noise_slope", [0.0, 0.1])
-def test_the_density_of_traction_integrates_to_one_under_crosstalk(crosstalk, noise_slope):
-    values = parameters(crosstalk=crosstalk, noise_slope=noise_slope, gain_traction=0.1)
+def test_the_density_of_traction_integrates_to_one_under_crosstalk(crosstalk):
+    values = parameters(crosstalk=crosstalk, gain_traction=0.1)
     force = np.linspace(-2.0, 6.0, 8001)
     log_density = run_log_likelihood(single_blocks(0.05, 5.0, force), LAW, values)[0]
     assert np.trapezoid(np.exp(log_density), force) == pytest.approx(1.0, abs=1e-3)
@@ -313,13 +318,14 @@ def test_a_gain_common_to_both_channels_cancels_in_the_friction():
 
 
 def test_a_bias_that_pushes_the_load_through_zero_leaves_a_finite_density():
-    values = parameters(bias_normal=50.0, noise_slope=0.1)
+    values = parameters(bias_normal=50.0)
     assert np.all(np.isfinite(run_log_likelihood(blocks(), LAW, values)))
 
 
-def test_noise_is_the_floor_plus_the_slope_times_the_model_force():
-    predicted = predict_blocks(blocks(), LAW, parameters(noise_slope=0.2))
-    np.testing.assert_allclose(predicted.noise, 0.1 + 0.2 * np.abs(predicted.force))
+def test_noise_has_the_size_of_its_run_and_nothing_of_the_curve():
+    sizes = np.linspace(0.5, 2.0, len(blocks()))
+    predicted = predict_blocks(blocks(noise_size=sizes), LAW, parameters())
+    np.testing.assert_allclose(predicted.noise[0], 0.1 * sizes)
 
 
 @pytest.mark.parametrize("crosstalk", [-0.02, 0.02])

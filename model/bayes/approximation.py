@@ -9,8 +9,9 @@ from model.bayes.drawing.laplace import LaplaceMixture
 from model.bayes.drawing.shear import find_shear
 from model.bayes.drawing.tails import approximate
 from model.bayes.drawing.weighted import importance_draws
-from model.bayes.plain_fit import PlainFit
+from model.bayes.plain.fit import PlainFit, plain_fit
 from model.bayes.posterior import SlipPosterior
+from model.slip.samples import SlipSamples
 
 FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 PRIOR_DRAWS = 400
@@ -44,6 +45,24 @@ def starting_points(
     heights = posterior.log_density(drawn)
     ranked = drawn[np.argsort(-heights)][: np.isfinite(heights).sum()]
     return np.vstack([*near, ranked[:: max(1, len(ranked) // PRIOR_STARTS)]])
+
+
+def plain_starts(
+    samples: SlipSamples, posterior: SlipPosterior, rng: np.random.Generator
+) -> np.ndarray:
+    """Choose starting points as `starting_points`, from a plain fit of the samples, shape (m, d).
+
+    Args:
+        samples: The samples.
+        posterior: The posterior density of their block means.
+        rng: Source of randomness.
+
+    Raises:
+        FitError: No curve of the law comes near the samples.
+    """
+    zero_sd = float(posterior.priors["radius_error"].value(1.0))
+    plain = plain_fit(samples, posterior.law, priors=posterior.priors, zero_sd=zero_sd, rng=rng)
+    return starting_points(posterior, plain, rng)
 
 
 def straightened(

@@ -16,7 +16,7 @@ from model.bayes.cross_validation import CrossValidation, cross_validate
 from model.bayes.drawing.batches import in_batches
 from model.bayes.drawing.laplace import Laplace, LaplaceMixture
 from model.bayes.drawing.tails import approximate
-from model.bayes.plain_fit import PlainFit, plain_fit
+from model.bayes.plain.fit import PlainFit, plain_fit
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length
 from model.bayes.priors import Prior
@@ -174,9 +174,7 @@ def _prepared(
     """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
     defaults = default_priors(law, everything, load_cell, rig_errors)
-    plain = plain_fit(
-        samples, law, priors=defaults, zero_sd=max(rig_errors.radius_ratio, 1e-9), rng=rng
-    )
+    plain = plain_fit(samples, law, priors=defaults, zero_sd=rig_errors.radius_ratio, rng=rng)
     choice = block_choice
     if not isinstance(choice, BlockChoice):
         choice = choose_block_length(samples, plain, length=choice)

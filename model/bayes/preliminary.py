@@ -9,7 +9,7 @@ from model.arrays import Array
 from model.bayes.averaging.blocks import block_means
 from model.bayes.averaging.fast_wander import FastWander, fast_wander
 from model.bayes.averaging.slip_noise import slip_noise_variance
-from model.bayes.plain_fit import PlainFit
+from model.bayes.plain.fit import PlainFit
 from model.slip.samples import SlipSamples
 
 MAX_BLOCKS = 3000  # largest number of blocks

@@ -20,13 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.approximation import starting_points
+from model.bayes.approximation import plain_starts
 from model.bayes.autoregression import centred, memory_of, run_variances, whitened
 from model.bayes.averaging.blocks import block_means
 from model.bayes.checks.raw import raw_residuals
 from model.bayes.drawing.laplace import Laplace, find_mode
 from model.bayes.fit import CLEAR_WIN, not_identified
-from model.bayes.plain_fit import plain_fit
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip.definition import slip_per_radius_error
 from model.slip.law import SlipLaw
@@ -127,12 +126,7 @@ def find_run_out(
     for _ in range(PASSES):
         corrected = _corrected(samples, coefficients)
         posterior = _posterior(corrected, law, load_cell, rig_errors)
-        if starts is None:
-            plain = plain_fit(
-                corrected, law, priors=posterior.priors, rng=rng,
-                zero_sd=max(rig_errors.radius_ratio, 1e-9),
-            )  # fmt: skip
-            starts = starting_points(posterior, plain, rng)[:2]
+        starts = plain_starts(corrected, posterior, rng)[:2] if starts is None else starts
         curve = find_mode(posterior.log_density, starts)
         starts = curve.mode[None]
         system = _system(corrected, posterior, curve, length)

@@ -26,7 +26,7 @@ from model.bayes.averaging.blocks import block_means
 from model.bayes.drawing.tails import approximate
 from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import not_identified
-from model.bayes.plain_fit import fit_blocks
+from model.bayes.plain.fit import fit_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.errors import FitError
 from model.slip.rig_errors import USUAL

@@ -300,6 +300,7 @@ def _print_quality(console: Console, calibration: Calibration) -> None:
     """Print R² and RMSE of the fit, R² of cross-validation, and the time it took."""
     residuals = calibration.residuals
     lines = [
+        f"Plain fit: {calibration.fit.plain.describe()}",
         f"Fit of the block means: R² {residuals.r_squared:.4f}, RMSE {residuals.rmse:.3g} N, RMSE "
         f"of F/Fn {residuals.rmse_over_load:.3g}",
     ]

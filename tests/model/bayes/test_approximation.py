@@ -11,7 +11,7 @@ from model.bayes.averaging.blocks import block_means
 from model.bayes.drawing.laplace import LaplaceMixture
 from model.bayes.drawing.tails import approximate
 from model.bayes.drawing.weighted import importance_draws
-from model.bayes.plain_fit import fit_blocks
+from model.bayes.plain.fit import fit_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip import MagicFormula
 from rig.slip_rig.imperfections import TYPICAL_RIG

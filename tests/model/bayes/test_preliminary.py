@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 from model.bayes.averaging.blocks import block_means
-from model.bayes.plain_fit import plain_fit
+from model.bayes.plain.fit import plain_fit
 from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.preliminary import (
     MAX_BLOCKS,

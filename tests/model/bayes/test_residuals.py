@@ -11,7 +11,7 @@ from scipy.linalg import cholesky, toeplitz
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.averaging.load_levels import nearest_level
 from model.bayes.likelihood import NUISANCE, log_likelihood, predict_blocks
-from model.bayes.plain_fit import fit_blocks
+from model.bayes.plain.fit import fit_blocks
 from model.bayes.posterior import LoadCell, default_priors
 from model.bayes.residuals import analyse_residuals, far_runs, lag_correlation
 from model.slip import MagicFormula, SlipDefinition

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Advice of a verdict that can be followed to the letter: lines of a plan, commands, options."""
 
+import re
 from functools import singledispatch
 from typing import Final
 
@@ -164,12 +165,22 @@ def _try_definition(advice: TryDefinition) -> str:
 
 @advice_text.register
 def _exclude_runs(advice: ExcludeRuns) -> str:
-    """Advise to exclude runs that do not fit the others, by a command for each."""
-    commands = "\n".join(f"zebro-lab exclude DATA/{name} --why REASON" for name in advice.runs)
+    """Advise to leave out runs that do not fit the others: rows of a table, or run folders."""
+    found = [re.fullmatch(r"(.+) row (\d+)", name) for name in advice.runs]
+    tables: dict[str, list[str]] = {}
+    for row in filter(None, found):
+        tables.setdefault(row[1], []).append(row[2])
+    lines = [
+        f"[runs] leave_out = [{', '.join(rows)}]  # of {name}" for name, rows in tables.items()
+    ]
+    lines += [
+        f"zebro-lab exclude DATA/{name} --why REASON"
+        for name, row in zip(advice.runs, found, strict=True) if row is None
+    ]  # fmt: skip
     return (
         f"{advice.reason}: where the lab notes tell why (another material, a lost zero), leave "
-        "these runs out, each with its reason, rows of a table by [rows] keep in columns.toml, and "
-        f"give the same command again:\n{commands}"
+        f"these out{' in columns.toml' if tables else ', each with its reason'}, and give the "
+        "same command again:\n" + "\n".join(lines)
     )
 
 

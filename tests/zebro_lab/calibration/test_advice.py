@@ -57,6 +57,13 @@ def test_each_run_that_is_left_out_has_its_command():
     assert lines[1:] == [f"zebro-lab exclude DATA/{run} --why REASON" for run in ("one", "two")]
 
 
+def test_rows_of_a_table_are_left_out_by_their_numbers():
+    text = advice_text(ExcludeRuns("x", ("table row 8", "table row 12", "other row 3")))
+    given = [tomllib.loads("\n".join(line.split(" ", 1))) for line in text.splitlines()[1:]]
+    assert given == [{"runs": {"leave_out": rows}} for rows in ([8, 12], [3])]
+    assert "zebro-lab exclude" not in text
+
+
 @pytest.mark.parametrize(
     ("advice", "said"),
     [

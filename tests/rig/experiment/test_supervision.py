@@ -72,7 +72,11 @@ def test_ctrl_c_asks_for_a_softer_stop_first():
 
 @pytest.mark.parametrize("name", ENDING)
 def test_a_signal_that_would_end_the_program_asks_for_a_safe_stop(name):
-    switch = StopSwitch()
-    with signal_stops(switch):
-        os.kill(os.getpid(), signal.Signals[name])
+    switch, number = StopSwitch(), signal.Signals[name]
+    before = signal.signal(number, signal.SIG_DFL)  # a shell's background job ignores SIGQUIT
+    try:
+        with signal_stops(switch):
+            os.kill(os.getpid(), number)
+    finally:
+        signal.signal(number, before)
     assert (switch.pending.category, switch.pending.reason) == (StopCategory.SAFE, name)

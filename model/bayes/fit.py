@@ -179,7 +179,7 @@ def _prepared(
     if not isinstance(choice, BlockChoice):
         choice = choose_block_length(samples, plain, length=choice)
     blocks = block_means(samples, choice.length, wander_share=choice.wander_share)
-    blocks = with_noise(blocks, plain)
+    blocks = with_noise(blocks, choice.plain or plain)  # the same for all laws compared
     fixed = not_identified(blocks)
     priors, correlation = with_stated(defaults, stated, fixed=fixed)
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)

@@ -64,12 +64,14 @@ class BlockChoice:
         reason: Text of a few words: the criterion that determined the length.
         wander: How much of the white part of slip is wander of the true slip, by the force; None
             where nothing tells it.
+        plain: The plain fit, which tells loads and noise of runs; None where each law's own does.
     """
 
     length: int
     correlation: float | None
     reason: str
     wander: FastWander | None = None
+    plain: PlainFit | None = None
 
     @property
     def wander_share(self) -> float:
@@ -103,7 +105,7 @@ def choose_block_length(
     slope = plain.law.slip_derivative(slip, samples.normal_force, plain.values)
     wander = fast_wander(samples, residual, slope)
     if length is not None:
-        return BlockChoice(length, None, "as asked for", wander)
+        return BlockChoice(length, None, "as asked for", wander, plain)
     correlation = correlation_time(
         residual, samples.slices(), white=slope**2 * slip_noise[samples.run]
     )
@@ -124,7 +126,7 @@ def choose_block_length(
     settled = _settled_length(samples, plain, chosen, least)
     if settled < chosen:
         reason, chosen = "so that more blocks hardly move the plain fit", settled
-    return BlockChoice(chosen, correlation, reason, wander)
+    return BlockChoice(chosen, correlation, reason, wander, plain)
 
 
 def _steady_length(samples: SlipSamples, length: int, largest_spread: float) -> int:

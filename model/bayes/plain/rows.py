@@ -74,7 +74,8 @@ def rows_of(samples: SlipSamples, scale: float) -> PlainRows:
 
     Where slip spreads by less than `STRAIGHT` of the scale within the median run, beyond the noise
     of the speeds, rows are the means of the runs, if there are `FEWEST_TESTS`. Else neighbours are
-    averaged, as long as slip spreads by as little within the mean of most and rows are too many.
+    averaged, as long as slip spreads by as little within the mean of most and rows are too many; of
+    more than `MOST_ROWS` the rest is left out.
     """
     parts = samples.slices()
     lengths = np.array([part.stop - part.start for part in parts])
@@ -94,11 +95,13 @@ def rows_of(samples: SlipSamples, scale: float) -> PlainRows:
                 for part, length, count in zip(parts, lengths, counts, strict=True)
             ]
         )
-        starts = starts[:: -(-len(starts) // MOST_ROWS)]
     ends = np.append(starts[1:], len(samples))
     ends = np.minimum(ends, np.array([part.stop for part in parts])[samples.run[starts]])
+    every = -(-len(starts) // MOST_ROWS)  # of what is still too many, some are left out
+    starts, ends = starts[::every], ends[::every]
 
     def mean(values: Array) -> Array:
+        """Average one value a sample over each row."""
         sums = np.append(0.0, np.cumsum(values))
         return (sums[ends] - sums[starts]) / (ends - starts)
 

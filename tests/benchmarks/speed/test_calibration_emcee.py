@@ -8,6 +8,7 @@ from benchmarks.speed.calibration_emcee import (
     numpy_log_likelihood,
     scipy_log_likelihood,
 )
+from model.bayes.drawing.sampler import walker_count
 from model.bayes.fit import prepare_fit
 from model.bayes.likelihood import log_likelihood
 from model.slip.thesis_curve import THESIS_LAW
@@ -37,6 +38,6 @@ def test_a_dense_likelihood_is_ours(fit, dense):
 
 def test_naive_walkers_make_whole_moves_and_each_evaluation_counts(fit):
     found = naive(fit, numpy_log_likelihood, seconds=1e-9, per_evaluation=0.01)
-    walkers = 3 * len(fit.laplace.mode)
+    walkers = walker_count(len(fit.laplace.mode))
     assert found.effective == pytest.approx(0.01 * 2 * walkers)  # the starts and one move
     assert found.rate > 0

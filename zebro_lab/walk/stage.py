@@ -23,7 +23,7 @@ from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.legs import LegNames, read_leg_log
 from zebro_lab.runs.recorded_walk import is_recorded
 from zebro_lab.terminal.leg_options import joint_names
-from zebro_lab.walk.band import predict_band
+from zebro_lab.walk.band import in_the_middle, predict_band
 from zebro_lab.walk.contacts import contacts_of
 from zebro_lab.walk.folder import PREDICTION, WALKED
 from zebro_lab.walk.leg_angles import angles_from
@@ -192,7 +192,8 @@ def _walked(
             request.band, walked, angles,
             duration=legs.duration, watcher=watcher, executor=walking.executor,
         )  # fmt: skip
-        walked = replace(walked, band=band)
+        told = walked.informed is not None  # else every unknown is at its central value already
+        walked = in_the_middle(walked, band) if told else replace(walked, band=band)
     if start:
         walked = walked.delayed(start)
     if pictures.contacts:

@@ -11,13 +11,21 @@ import pytest
 from model.gait import tripod_angles, tripod_reference
 from model.gait.inexact_log import InexactLog
 from model.leg_state import ANISOTROPY
+from model.path_draws import bent, states_at
 from model.poses import Poses
 from support.validated_walks import predicted, write_walk_data
 from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.robot.robot_file import RobotFile
-from zebro_lab.walk.band import ASSUMED_OFFSET_DEG, band_settings, offset_sd_deg, predict_band
+from zebro_lab.walk.band import (
+    ASSUMED_OFFSET_DEG,
+    _length_and_turn,
+    band_settings,
+    in_the_middle,
+    offset_sd_deg,
+    predict_band,
+)
 from zebro_lab.walk.folder import DRAWS, read_draws
 from zebro_lab.walk.request import BandRequest
 from zebro_lab.walk.walking import Walked
@@ -99,3 +107,14 @@ def test_draws_of_another_shape_are_refused(tmp_path, t, poses, message):
     np.savez(tmp_path / DRAWS, t=np.array(t), poses=poses)
     with pytest.raises(DataError, match=message):
         read_draws(tmp_path)
+
+
+def test_a_single_path_is_moved_to_the_middle_of_its_band(walked, three):
+    single = Walked(walked, GAIT, RobotFile(), None, "dynamics", 0.001, "a walk", ())
+    bend = {"distance": np.array([0.1, 0.12, 0.2]), "curvature": np.array([0.5, 0.6, -1.0])}
+    band = bent(three, **bend)
+    path = in_the_middle(single, band).path
+    middle = Poses.of_states(band.t, states_at(path.poses.draws(), band.t))
+    for found, draws in zip(_length_and_turn(middle), _length_and_turn(band), strict=True):
+        assert found[0] == pytest.approx(np.median(draws), abs=1e-3)
+    assert path.position.shape == walked.position.shape

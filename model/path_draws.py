@@ -52,6 +52,33 @@ def bent_walk(path: WalkPath, bend: Bend, ground: Ground = FLAT) -> WalkPath:
     )
 
 
+def middle_bend(single: Poses, band: Poses) -> Bend:
+    """Return what stretches and bends a single path to the middle of its band.
+
+    That is the path with the medians of the draws' length and turn. The most probable state of legs
+    and floor is not the middle of their posterior: friction, the post-peak drop and the legs' arc
+    make up for each other along a curve.
+
+    Args:
+        single: The single path, as one draw that covers the band's times.
+        band: Paths of m draws.
+    """
+    travelled, turned = length_and_turn(band)
+    same_times = Poses.of_states(band.t, states_at(single, band.t))
+    own, own_turn = (float(each[0]) for each in length_and_turn(same_times))
+    if own == 0:
+        return Bend()
+    return Bend(float(np.median(travelled)) / own - 1, (float(np.median(turned)) - own_turn) / own)
+
+
+def length_and_turn(paths: Poses) -> tuple[Array, Array]:
+    """Return length [m] and turn, positive to the left [rad], of each of m paths, (m,) each."""
+    states = paths.states
+    steps = np.diff(states[..., :2], axis=1)
+    yaw = np.unwrap(states[..., 2], axis=1)
+    return np.hypot(steps[..., 0], steps[..., 1]).sum(axis=1), yaw[:, -1] - yaw[:, 0]
+
+
 def anchored(
     paths: Poses,
     pose: Array,

@@ -6,16 +6,14 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
-from model.arrays import Array
 from model.gait.inexact_log import InexactLog
 from model.gait.reference import LegReference
 from model.leg_state import ANISOTROPY, LegState
-from model.path_draws import bent_walk, states_at
+from model.path_draws import bent_walk, middle_bend
 from model.poses import Poses
 from model.predict import ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.tasks import Watcher
-from model.walk.bend import Bend
 from zebro_lab.calibration.posterior_file import slip_tables
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.folder import INFORMED_MODEL
@@ -92,34 +90,14 @@ def predict_band(
 
 
 def in_the_middle(walked: Walked, band: Poses) -> Walked:
-    """Return a walk with its band, the single path stretched and bent to the middle of it.
-
-    The most probable state of legs and floor is not the middle of their posterior: friction, the
-    post-peak drop and the legs' arc make up for each other along a curve. The path keeps its shape,
-    and gets the medians of the draws' length and turn.
+    """Return a walk with its band, the single path moved to the middle of it by `middle_bend`.
 
     Args:
         walked: The single walk.
         band: Its band, of m draws.
     """
-    travelled, turned = _length_and_turn(band)
-    single = Poses.of_states(band.t, states_at(walked.path.poses.draws(), band.t))
-    own_length, own_turn = (float(each[0]) for each in _length_and_turn(single))
-    if own_length == 0:
-        return replace(walked, band=band)
-    bend = Bend(
-        float(np.median(travelled)) / own_length - 1,
-        (float(np.median(turned)) - own_turn) / own_length,
-    )
+    bend = middle_bend(walked.path.poses.draws(), band)
     return replace(walked, band=band, path=bent_walk(walked.path, bend, walked.heights))
-
-
-def _length_and_turn(paths: Poses) -> tuple[Array, Array]:
-    """Return length [m] and turn, positive to the left [rad], of each of m paths, (m,) each."""
-    states = paths.states
-    length = np.sum(np.hypot(*np.moveaxis(np.diff(states[..., :2], axis=1), -1, 0)), axis=1)
-    yaw = np.unwrap(states[..., 2], axis=1)
-    return length, yaw[:, -1] - yaw[:, 0]
 
 
 def _leg_state(

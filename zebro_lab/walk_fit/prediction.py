@@ -9,6 +9,7 @@ import numpy as np
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.judgement import Prediction
+from model.path_draws import bent, middle_bend
 from model.predict import FINE, ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.walk_fit.fit import WalkFit, fit_walks
@@ -131,7 +132,11 @@ def predict_from(
     band = predict_paths(drawn, t, state=state, error=spread, rng=rng, executor=executor)
     likely = posterior.most_likely(walk=index)
     drawn = walk_draws(robot, angles, [slip.traction_table(weight=weight)], likely, rng=rng)
-    single = predict_paths(drawn, t, state=likely, error=EXACT, rng=rng, options=FINE).draws(0)
+    likeliest = predict_paths(drawn, t, state=likely, error=EXACT, rng=rng, options=FINE)
+    bend = middle_bend(likeliest, band)
+    single = bent(
+        likeliest, distance=np.array([bend.distance]), curvature=np.array([bend.curvature])
+    ).draws(0)
     reference = SampledReference(t, angles.angles(t))
     direction = "left" if single.yaw[-1] >= single.yaw[0] else "right"
     baselines, notes = baseline_paths(robot, reference, direction=direction)

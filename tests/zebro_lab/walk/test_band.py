@@ -11,7 +11,7 @@ import pytest
 from model.gait import tripod_angles, tripod_reference
 from model.gait.inexact_log import InexactLog
 from model.leg_state import ANISOTROPY
-from model.path_draws import bent, states_at
+from model.path_draws import bent, length_and_turn, states_at
 from model.poses import Poses
 from support.validated_walks import predicted, write_walk_data
 from support.watchers import Nobody
@@ -20,7 +20,6 @@ from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.band import (
     ASSUMED_OFFSET_DEG,
-    _length_and_turn,
     band_settings,
     in_the_middle,
     offset_sd_deg,
@@ -115,6 +114,6 @@ def test_a_single_path_is_moved_to_the_middle_of_its_band(walked, three):
     band = bent(three, **bend)
     path = in_the_middle(single, band).path
     middle = Poses.of_states(band.t, states_at(path.poses.draws(), band.t))
-    for found, draws in zip(_length_and_turn(middle), _length_and_turn(band), strict=True):
+    for found, draws in zip(length_and_turn(middle), length_and_turn(band), strict=True):
         assert found[0] == pytest.approx(np.median(draws), abs=1e-3)
     assert path.position.shape == walked.position.shape

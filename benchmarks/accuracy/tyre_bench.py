@@ -20,13 +20,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from model.bayes.checks.groups import groups
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.special import chdtrc
 
 from model.arrays import Array
 from model.bayes.averaging.load_levels import load_levels, nearest_level
-from model.bayes.checks.groups import groups
 from model.bayes.checks.linear import linearise
 from model.bayes.cross_validation import r_squared
 from model.bayes.drawing.weighted import weighted_draws

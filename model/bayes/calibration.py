@@ -7,8 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.bayes.averaging.load_levels import largest_slips, middle_loads
-from model.bayes.checks.inspection import inspect
-from model.bayes.checks.linear import linearise
 from model.bayes.cross_validation import r_squared
 from model.bayes.drawing.convergence import Convergence
 from model.bayes.drawing.weighted import WeightedDraws
@@ -120,7 +118,6 @@ def conclude(
     levels = middle_loads(posterior.blocks)
     validation = fit.cross_validation
     compared = None if weighted is None else agreement(draws, weighted, convergence)
-    centred = linearise(posterior, draws.z.reshape(-1, draws.z.shape[-1]))
     return Calibration(
         fit=fit,
         comparison=comparison,
@@ -135,15 +132,12 @@ def conclude(
         residuals=residuals,
         agreement=compared,
         verdict=judge(
-            blocks=posterior.blocks,
-            law=posterior.law,
-            values=some,
+            fit,
+            samples,
+            z=draws.z.reshape(-1, draws.z.shape[-1])[:: max(1, len(draws.flat) // _CHECKED)],
             contraction={**narrowed, **_known(fit, draws)},
             convergence=convergence,
-            residuals=residuals,
             agreement=compared,
-            inspection=inspect(posterior, centred, samples, fit.block_choice),
-            offset_scale=fit.load_cell.zero_stability,
         ),
         contraction=narrowed,
         r_squared=None

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from model.arrays import Array
 from model.bayes.approximation import starting_points, straightened
 from model.bayes.averaging.blocks import SlipBlocks, block_means
 from model.bayes.averaging.run_noise import noise_sizes, with_true_loads
@@ -180,6 +181,7 @@ def _prepared(
         choice = choose_block_length(samples, plain, length=choice)
     blocks = block_means(samples, choice.length, wander_share=choice.wander_share)
     blocks = with_noise(blocks, choice.plain or plain)  # the same for all laws compared
+    blocks = replace(blocks, noise_size=blocks.noise_size * stated_sizes(samples, blocks))
     fixed = not_identified(blocks)
     priors, correlation = with_stated(defaults, stated, fixed=fixed)
     posterior = SlipPosterior(blocks, law, priors, fixed, correlation)
@@ -211,6 +213,22 @@ def with_noise(blocks: SlipBlocks, plain: PlainFit) -> SlipBlocks:
     residual = plain.residual(blocks.slip, blocks.normal_force, blocks.traction_force)
     slip_slope = plain.law.slip_derivative(slip, load, plain.values)
     return replace(blocks, noise_size=noise_sizes(blocks, residual, slip_slope))
+
+
+def stated_sizes(samples: SlipSamples, blocks: SlipBlocks) -> Array:
+    """Return the size of the noise of each row of a table by its stated standard deviation, (n,).
+
+    It is the root mean square of the stated size over the middle one and of 1: what trials differ
+    by beyond the scatter within them is alike. 1 where nothing is stated, or rows are averaged.
+
+    Args:
+        samples: The samples.
+        blocks: Their block means.
+    """
+    stated = samples.force_sd
+    if stated is None or len(blocks) != len(samples) or not np.median(stated) > 0:
+        return np.ones(len(blocks))
+    return np.sqrt(0.5 * (1 + (stated / np.median(stated)) ** 2))
 
 
 def validated(fit: PreparedFit, *, executor: Executor | None = None) -> PreparedFit:

@@ -16,8 +16,8 @@ MAX_BLOCKS = 3000  # largest number of blocks
 MAX_SLIP_SPREAD = 0.45  # of the slip scale within a block; more, and the quadrature is biased
 MIN_BLOCKS_PER_RUN = 5
 MOST_SETTLED = 6000  # blocks, from which on no more are tried
-MOVED = 0.2  # of a standard deviation, by which twice as many blocks may move the plain fit
-NOISY = 0.3  # noise of a block's slip over the slip scale, above which blocks are not halved
+MOVED = 0.2  # of a standard deviation, by which averaging may move the plain fit
+AVERAGED_OUT = "to average out the slip sensors' noise"
 MEMORIES = 2  # correlation times in a block: means over shorter ones are not an AR(1) process
 
 
@@ -89,8 +89,8 @@ def choose_block_length(
     slope reaches its largest force), and that there are at most 3,000 blocks. The slip sensors'
     white noise is no part of that time: the likelihood has it apart. What it does to the answer
     overrides these: a run of median length keeps 5 blocks, the standard deviation of true slip in
-    nine of ten blocks is at most 0.45 slip scales, and twice as many blocks would move slope and
-    force of the plain fit by less than `MOVED` of their standard deviation; down to single samples.
+    nine of ten blocks is at most 0.45 slip scales, and averaging the plain fit's own curve moves
+    its slope and force by less than `MOVED` of their standard deviation; down to single samples.
 
     Args:
         samples: The samples.
@@ -113,7 +113,7 @@ def choose_block_length(
     noise = float(np.median(slip_noise))
     wanted = {
         "twice the correlation time of the noise": int(np.ceil(MEMORIES * correlation)),
-        "to average out the slip sensors' noise": int(np.ceil(noise * (10 / slip_scale) ** 2)),
+        AVERAGED_OUT: max(1, int(np.ceil(noise * (10 / slip_scale) ** 2))),
         f"at most {MAX_BLOCKS} blocks": int(np.ceil(len(samples) / MAX_BLOCKS)),
     }
     reason, chosen = max(wanted.items(), key=lambda item: item[1])
@@ -122,10 +122,9 @@ def choose_block_length(
     steady = _steady_length(samples, chosen, MAX_SLIP_SPREAD * slip_scale)
     if steady < chosen:
         reason, chosen = "so that slip changes little within a block", steady
-    least = int(np.ceil(noise / (NOISY * slip_scale) ** 2))
-    settled = _settled_length(samples, plain, chosen, least)
+    settled = _settled_length(samples, plain, chosen, wanted[AVERAGED_OUT])
     if settled < chosen:
-        reason, chosen = "so that more blocks hardly move the plain fit", settled
+        reason, chosen = "so that averaging hardly moves the plain fit", settled
     return BlockChoice(chosen, correlation, reason, wander, plain)
 
 
@@ -146,20 +145,26 @@ def _steady_length(samples: SlipSamples, length: int, largest_spread: float) -> 
 
 
 def _settled_length(samples: SlipSamples, plain: PlainFit, length: int, least: int) -> int:
-    """Halve a block length until that moves the plain fit by less than `MOVED`, but to no less.
+    """Halve a block length until averaging moves the plain fit by less than `MOVED`, or it is 1.
 
     Args:
         samples: The samples.
         plain: The plain fit of them.
         length: Number of samples in a block to start from.
-        least: Least number, in the mean of which the noise of slip is small.
+        least: Number of samples in the mean of which the noise of slip is small; slip without
+            noise is interpolated between these means.
     """
     if plain.of_run_means or not len(plain.draws):
         return length
-    blocks = block_means(samples, length)
-    while length // 2 >= max(least, 1):
-        shorter = block_means(samples, length // 2)
-        if plain.moved(blocks, shorter) < MOVED or len(shorter) > MOST_SETTLED:
+    slip = np.empty(len(samples))
+    for part in samples.slices():
+        own, n = samples.slip[part], part.stop - part.start
+        edges = np.linspace(0, n, max(1, n // least) + 1).astype(int)
+        means = np.add.reduceat(own, edges[:-1]) / np.diff(edges)
+        slip[part] = np.interp(np.arange(n), 0.5 * (edges[1:] + edges[:-1] - 1), means)
+    while length > 1:
+        blocks = block_means(samples, length)
+        if len(blocks) > MOST_SETTLED or plain.moved_by_averaging(slip, blocks) < MOVED:
             break
-        length, blocks = length // 2, shorter
+        length = length // 2
     return length

@@ -1,174 +1,178 @@
 # SPDX-License-Identifier: MIT
-"""Verdict on a fit: whether it converged, whether it can be trusted, and what to do next."""
+"""Verdict on a fit: eight questions, what is likely wrong, and what to do next."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+import numpy as np
+
 from model.arrays import Array
 from model.bayes.advice import Advice
-from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.checks import questions
+from model.bayes.checks.between_runs import scatter_between_runs
+from model.bayes.checks.causes import Finding, Question, likely, named
 from model.bayes.checks.check import Check, Outcome
-from model.bayes.checks.fit import offsets, run_means, shape, whiteness
-from model.bayes.checks.inspection import TERMS, Inspection
-from model.bayes.checks.reach import RISE, loads, peak, rise, weak_parameters
-from model.bayes.checks.sampling import convergence_checks, engines
+from model.bayes.checks.comparison import compare_plain
+from model.bayes.checks.linear import linearise
+from model.bayes.checks.points import group_residuals
+from model.bayes.checks.reach import reach_of, weak_parameters
+from model.bayes.checks.samples import sample_findings
+from model.bayes.checks.terms import find, suspects
 from model.bayes.drawing.convergence import Convergence
 from model.bayes.estimate import Agreement
-from model.bayes.residuals import Residuals
-from model.slip.law import SlipLaw
-
-MOST_CAUSES = 3  # that a headline names
+from model.bayes.fit import PreparedFit
+from model.slip.samples import SlipSamples
 
 
 class State(StrEnum):
-    """How far a fit can be trusted, from the best to the worst."""
+    """The verdict in up to three words, from the best to the worst."""
 
     TRUSTWORTHY = "trustworthy"
-    AS_TESTED = "trustworthy as far as tested"
+    AS_TESTED = "not fully tested"
     NOT_TRUSTWORTHY = "not trustworthy"
-    NOT_CONVERGED = "not converged"
+
+
+MEANINGS = {
+    State.TRUSTWORTHY: "use the curve, with its intervals, within the tested slips and loads",
+    State.AS_TESTED: "use the curve where what is untested does not matter to you",
+    State.NOT_TRUSTWORTHY: "do not use the curve",
+}
+"""What each state means for the person who asks."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Result of all checks of a fit.
+    """Answers to the eight questions about a fit, and what follows from them.
 
     Attributes:
-        convergence: Checks of the sampler's convergence.
-        trust: Checks of the model against the data, and of what the data show of the curve.
-        weak: Reason and advice for each weakly identified parameter, by the parameter's name.
-        suspected: What may be wrong with the data, the most likely first; more than one where
-            these cannot be told apart.
+        checks: The questions, answered.
+        weak: Names of parameters that the data hardly tell.
+        found: What is likely wrong with the data, the likeliest first; empty where nothing is.
+        notes: What is told beside it, and spoils nothing.
     """
 
-    convergence: tuple[Check, ...]
-    trust: tuple[Check, ...]
-    weak: Mapping[str, Advice]
-    suspected: tuple[str, ...] = ()
-
-    @property
-    def checks(self) -> tuple[Check, ...]:
-        """All checks, those of the sampler first."""
-        return (*self.convergence, *self.trust)
+    checks: tuple[Check, ...]
+    weak: tuple[str, ...] = ()
+    found: tuple[Finding, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def converged(self) -> bool:
-        """Whether no check of the sampler's convergence failed."""
-        return not any(check.failed for check in self.convergence)
+        """Whether the sampler converged."""
+        return not any(c.failed and c.name == Question.SAMPLER for c in self.checks)
 
     @property
     def state(self) -> State:
-        """How far the fit can be trusted: the worst state that its checks give.
-
-        Not converged if a check of convergence failed, not trustworthy if one of `trust` failed, as
-        tested if one of these is not testable, else trustworthy.
-        """
-        if not self.converged:
-            return State.NOT_CONVERGED
-        if any(check.failed for check in self.trust):
+        """The verdict: that of the worst answer."""
+        if any(check.failed for check in self.checks):
             return State.NOT_TRUSTWORTHY
-        return State.AS_TESTED if self.not_testable else State.TRUSTWORTHY
+        return State.AS_TESTED if self.untested else State.TRUSTWORTHY
 
     @property
     def trustworthy(self) -> bool:
-        """Whether every check was made and passed: `State.TRUSTWORTHY`."""
+        """Whether every question could be answered, and every answer is yes."""
         return self.state is State.TRUSTWORTHY
 
     @property
     def doubtful(self) -> bool:
-        """Whether a check failed, of convergence or of the model."""
-        return self.state in (State.NOT_TRUSTWORTHY, State.NOT_CONVERGED)
-
-    @property
-    def not_testable(self) -> tuple[str, ...]:
-        """Claims that these data cannot test, which neither passed nor failed."""
-        return tuple(check.name for check in self.trust if check.outcome is Outcome.NOT_TESTABLE)
+        """Whether an answer is no."""
+        return self.state is State.NOT_TRUSTWORTHY
 
     @property
     def untested(self) -> tuple[str, ...]:
-        """What the headline says of these claims, without repetition."""
-        return tuple(dict.fromkeys(check.untested for check in self.trust if check.untested))
+        """What these data cannot tell, without repetition."""
+        return tuple(dict.fromkeys(each.untested for each in self.checks if each.untested))
 
     @property
     def causes(self) -> tuple[str, ...]:
-        """What is probably wrong with the data, up to `MOST_CAUSES`; empty unless `trust` failed.
-
-        Faults of single samples and runs come first; then the terms that explain most, which may
-        be two that cannot be told apart.
-        """
-        if not any(check.failed for check in self.trust):
-            return ()
-        faults = [c.cause for c in self.trust if c.cause and c.name not in TERMS]
-        return tuple(dict.fromkeys([*faults, *self.suspected]))[:MOST_CAUSES]
+        """What is likely wrong, one or two of the closed list `Cause`; empty where nothing is."""
+        return tuple(str(cause) for cause in named(self.found)) if self.doubtful else ()
 
     def headline(self) -> str:
-        """Format the verdict as one line of text.
-
-        Unless unconverged it names what is untested, and the weak parameters.
-        """
-        failed = [check.name for check in self.trust if check.failed]
-        if self.state is State.NOT_CONVERGED:
-            return "NOT CONVERGED: do not use these numbers"
-        if failed == [RISE]:
-            result = "converged, but NOT TRUSTWORTHY: too few slips where the curve rises"
-        elif failed:
-            result = "converged, but NOT TRUSTWORTHY: the model does not describe these data"
-            if self.causes:
-                result += f"; probable cause: {', or '.join(self.causes)}"
+        """Format the verdict as one line of text."""
+        if not self.converged:
+            return f"{self.state}: the sampler did not converge"
+        if self.causes:
+            reason = f"likely wrong: {' or '.join(self.causes)} ({self.found[0].text})"
+        elif self.doubtful:
+            failed = [check.name for check in self.checks if check.failed]
+            reason = f"no cause stands out; {' '.join(failed)} No."
+        elif self.untested:
+            reason = f"untested: {', '.join(self.untested)}"
         else:
-            result = f"converged and {self.state}"
-        if self.untested:
-            result += f"; untested: {', '.join(self.untested)}"
-        return result + (f"; weakly identified: {', '.join(self.weak)}" if self.weak else "")
+            return str(self.state)
+        return f"{self.state}; {reason}"
 
     def next_steps(self) -> tuple[Advice, ...]:
-        """List the advice of failed checks, of `weak` and of untested ones, without repetition."""
-        failed = [check.advice for check in self.checks if check.failed and check.advice]
-        untested = [check.advice for check in self.checks if check.untested and check.advice]
-        return tuple(dict.fromkeys([*failed, *self.weak.values(), *untested]))
+        """List what to do, without repetition: for what is likely wrong, else for each question."""
+        if self.causes:
+            return tuple(dict.fromkeys(each.advice for each in self.found[:2]))
+        asked = [check for check in self.checks if check.outcome is not Outcome.PASSED]
+        failed = [check for check in asked if check.failed] or asked
+        return tuple(dict.fromkeys(advice for check in failed for advice in check.advice))
 
 
 def judge(
+    fit: PreparedFit,
+    samples: SlipSamples,
     *,
-    blocks: SlipBlocks,
-    law: SlipLaw,
-    values: Array,
+    z: Array,
     contraction: Mapping[str, float],
     convergence: Convergence,
-    residuals: Residuals,
     agreement: Agreement | None,
-    inspection: Inspection,
-    offset_scale: float,
 ) -> Verdict:
-    """Check convergence, offsets, run means, residuals, curve, slips and what else may be wrong.
+    """Answer the eight questions about a fit.
 
     Args:
-        blocks: The block means.
-        law: The slip law, of k parameters.
-        values: Posterior draws of law and measurement parameters, shape (w, k + 11).
+        fit: The fit.
+        samples: The samples that were fitted.
+        z: Posterior draws of its coordinates, shape (w, d).
         contraction: 1 - posterior variance over prior variance of each sampled parameter, by
             name [-].
-        convergence: Convergence diagnostics of the sampler.
-        residuals: Analysis of the residuals.
+        convergence: Convergence diagnostics of the draws.
         agreement: Comparison of the sampler with importance sampling; None where the posterior was
             not sampled.
-        inspection: What was looked for in the data.
-        offset_scale: Scale of the prior on the run offsets' spread [N].
+
+    Raises:
+        LinAlgError: The covariance of a run's blocks is singular.
     """
-    return Verdict(
-        convergence=convergence_checks(convergence),
-        trust=(
-            engines(agreement),
-            offsets(blocks, law, values, offset_scale),
-            run_means(residuals, blocks),
-            whiteness(residuals, blocks),
-            shape(residuals, blocks),
-            rise(blocks, law, values),
-            peak(blocks, law, values),
-            loads(blocks),
-            *inspection.checks,
+    posterior = fit.posterior
+    blocks, law, values = posterior.blocks, posterior.law, posterior.values(z)
+    stability = fit.load_cell.zero_stability
+    linear = linearise(posterior, z, zero_stability=stability)
+    groups = group_residuals(linear)
+    of_samples, notes = sample_findings(posterior, linear, samples, fit.plain)
+    timed = samples.time is not None
+    findings = [
+        *of_samples,
+        *find(linear, suspects(linear, block_columns(fit, samples), timed=timed)),
+        *scatter_between_runs(linear, stability),
+        *questions.misfit(groups, blocks),
+    ]
+    of = questions.by_question(findings)
+    compared = compare_plain(posterior, linear, fit.plain, np.random.default_rng(0))
+    two_sided = questions.is_two_sided(blocks)
+    checks = (
+        questions.sampler(convergence, agreement),
+        questions.plain_fit_agrees(compared, blocks),
+        questions.points(groups, of[Question.POINTS], blocks),
+        questions.repeat(of[Question.REPEAT], blocks),
+        questions.reach(reach_of(blocks, law, values, contraction)),
+        questions.of_findings(
+            Question.RAW, of[Question.RAW], "no outliers, limits, frozen values or lags", notes
         ),
-        weak=weak_parameters(blocks, law, values, contraction),
-        suspected=tuple(found.text for found in inspection.suspected),
+        questions.slip(of[Question.SLIP], blocks, told=two_sided),
+        questions.of_findings(Question.UNITS, of[Question.UNITS], "values lie within their priors"),
     )
+    weak = weak_parameters(blocks, law, values, contraction)
+    return Verdict(checks, weak, likely(findings), tuple(notes))
+
+
+def block_columns(fit: PreparedFit, samples: SlipSamples) -> dict[str, Array]:
+    """Average the unused columns of the samples over the blocks of a fit, shape (n,) each."""
+    count = fit.posterior.blocks.count
+    starts = np.cumsum(count) - count
+    return {
+        name: np.add.reduceat(values, starts) / count for name, values in samples.others.items()
+    }

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The samples of a rig experiment, as arrays."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -56,6 +57,8 @@ class SlipSamples:
         angles: Angles of the discs; None where none are recorded.
         force_sd: Standard deviation of each sample's traction force, as of a mean over a trial,
             shape (n,) [N]; None where none is stated.
+        others: Further columns of the data by name, which differ between runs: a fit does not use
+            them, and asks whether they explain what it leaves, shape (n,) each.
     """
 
     slip: Array
@@ -67,6 +70,7 @@ class SlipSamples:
     time: Array | None = None
     angles: DiscAngles | None = None
     force_sd: Array | None = None
+    others: Mapping[str, Array] = field(default_factory=dict)
 
     def __len__(self) -> int:
         """Return the number of samples."""

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 import pytest
+from model.bayes.checks.inspection import inspect
 
 from model.arrays import Array
-from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
 from model.bayes.drawing.convergence import Convergence
 from model.bayes.drawing.weighted import weighted_draws

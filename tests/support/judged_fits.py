@@ -1,27 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Fits that nothing is wrong with, as block means, draws and diagnostics, to plant one fault in."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from model.bayes.averaging.blocks import SlipBlocks
-from model.bayes.checks.check import Check, Outcome
-from model.bayes.checks.inspection import Inspection
 from model.bayes.drawing.convergence import Convergence
 from model.bayes.estimate import Agreement
-from model.bayes.residuals import Residuals
-from model.bayes.verdict import Verdict, judge
 from model.slip import MagicFormula
 from model.slip.definition import SlipDefinition
 
 CONVERGED = Convergence(
     burn_in=50, length=1000, autocorrelation_time=np.full(10, 10.0), r_hat=np.full(10, 1.001),
     ess_bulk=np.full(10, 5000.0), ess_tail=np.full(10, 4000.0), mcse=np.full(10, 0.01),
-)  # fmt: skip
-CLEAN = Residuals(
-    whitened=np.zeros(48), lag_one=0.0, run_score=np.zeros(12), inside=11 / 12, inside_p=1.0,
-    misfit=0.001, misfit_p=0.5, detectable=0.01, r_squared=0.999, rmse=0.01, rmse_over_load=0.002,
 )  # fmt: skip
 AGREED = Agreement(mean=0.04, spread=0.02, pareto_k=0.3, mean_error=0.02, spread_error=0.01)
 LAW = MagicFormula("constant")
@@ -51,33 +41,7 @@ def two_sided(largest_slip: float, **changes) -> SlipBlocks:
     return blocks_at(np.append(-half[::-1], half), **changes)
 
 
-def draws(law_values: tuple[float, ...], *, offset_spread: float = 0.05) -> np.ndarray:
+def draws(law_values: tuple[float, ...]) -> np.ndarray:
     """Repeat one parameter vector, of a perfect load cell, as if it were draws."""
-    measurement = (*(0.0,) * 6, 1.0, 0.0, 0.02, 0.01, 0.1, offset_spread)
+    measurement = (*(0.0,) * 6, 1.0, 0.0, 0.02, 0.01, 0.1, 0.05)
     return np.tile([*law_values, *measurement], (5, 1))
-
-
-def verdict_on(**changes) -> Verdict:
-    """Judge a fit that nothing is wrong with, but for the changes."""
-    case = {
-        "blocks": two_sided(0.4), "law": LAW, "values": draws(RIG_VALUES),
-        "contraction": WELL_INFORMED, "convergence": CONVERGED, "residuals": CLEAN,
-        "agreement": AGREED, "inspection": Inspection((), ()), "offset_scale": 0.1,
-    }  # fmt: skip
-    return judge(**(case | changes))
-
-
-def failed(verdict: Verdict) -> list[Check]:
-    """Return the checks that failed."""
-    return [check for check in verdict.checks if check.failed]
-
-
-def outcome(name: str, **changes) -> Outcome:
-    """Return the outcome of one check of a fit with changes."""
-    (check,) = [check for check in verdict_on(**changes).checks if check.name == name]
-    return check.outcome
-
-
-def clean(**changes) -> Residuals:
-    """Return residuals that nothing is wrong with, but for the changes."""
-    return replace(CLEAN, **changes)

@@ -3,7 +3,7 @@
 
 import re
 from functools import singledispatch
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from model.bayes.advice import (
     Advice,
@@ -20,6 +20,9 @@ from model.bayes.advice import (
     ZeroBeforeEach,
 )
 
+if TYPE_CHECKING:  # it takes seconds to import
+    from model.bayes.calibration import Calibration
+
 SECONDS: Final = 2.0
 """Time of each further slip ratio [s]."""
 ZERO_SECONDS: Final = 10.0
@@ -30,6 +33,53 @@ SHORT_ZERO: Final = 2.0
 """Time of the zero before each of these runs [s]."""
 PASSES: Final = 4
 """Number of these short runs at each slip ratio."""
+
+
+def advice_texts(calibration: "Calibration") -> list[str]:
+    """Format what the verdict of a calibration advises to do next, for its kind of data.
+
+    Who brings a table of means has no plan that could be run again.
+    """
+    table = len(calibration.posterior.blocks) == calibration.posterior.blocks.n_runs
+    texts = (
+        of_table(step) if table else advice_text(step) for step in calibration.verdict.next_steps()
+    )
+    return list(dict.fromkeys(texts))
+
+
+@singledispatch
+def of_table(advice: Advice) -> str:
+    """Format advice for who brings a table of means; as `advice_text` where that needs no plan."""
+    return advice_text(advice)
+
+
+@of_table.register
+def _slips_in_table(advice: MeasureSlips) -> str:
+    """Advise which rows to add: slip ratios at loads."""
+    slips = ", ".join(dict.fromkeys(f"{slip:.2g}" for slip in advice.slips))
+    loads = ", ".join(f"{load:.3g}" for load in advice.loads)
+    return (
+        f"{advice.reason}: add rows of trials at slip ratios (material definition) of {slips}, at "
+        f"loads of {loads} N, and fit again"
+    )
+
+
+@of_table.register
+def _more_in_table(advice: MeasureAlso) -> str:
+    """Advise which rows to add: other loads, or the same trials again."""
+    if advice.loads:
+        loads = " and ".join(f"{load:.3g}" for load in advice.loads)
+        return f"{advice.reason}: add rows of trials at {loads} N, and fit again"
+    return f"{advice.reason}: repeat some trials, add each as a row of its own, and fit again"
+
+
+@of_table.register
+def _zero_in_table(advice: ZeroBeforeEach) -> str:
+    """Advise to subtract the zero of each trial."""
+    return (
+        f"{advice.reason}: measure the zero of the load cell before each trial, subtract it from "
+        "its mean, and fit again"
+    )
 
 
 @singledispatch

@@ -17,7 +17,7 @@ import tomlkit
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import law_options, slip_law
-from zebro_lab.calibration.advice import advice_text
+from zebro_lab.calibration.advice import advice_texts
 from zebro_lab.calibration.draws import posterior_tree
 from zebro_lab.calibration.law_table import LAWS_CSV, laws_content, laws_csv
 from zebro_lab.files.documents import read_toml_document
@@ -34,7 +34,7 @@ if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is re
 
 SCHEMA = 1
 SLIP_TOML = "slip.toml"
-AS_TESTED = "trustworthy as far as tested"
+AS_TESTED = "not fully tested"
 """`State.AS_TESTED` of `model.bayes.verdict`, which takes long to import."""
 POSTERIOR = "posterior.nc"
 PICTURES = ("curves", "surface", "corner", "traces", "residuals", "laws")
@@ -234,10 +234,11 @@ def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
         "converged": verdict.converged,
         "trustworthy": verdict.trustworthy,
         "state": str(verdict.state),
-        "not_testable": list(verdict.not_testable),
+        "likely_wrong": list(verdict.causes),
         "untested": list(verdict.untested),
+        "notes": list(verdict.notes),
         "weakly_identified": list(verdict.weak),
-        "next_steps": [advice_text(step) for step in verdict.next_steps()],
+        "next_steps": advice_texts(calibration),
         "checks": [
             {"name": check.name, "outcome": check.outcome.name.lower(), "evidence": check.evidence}
             for check in verdict.checks

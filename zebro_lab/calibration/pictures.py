@@ -15,7 +15,6 @@ from zebro_lab.files.source_names import is_simulated
 _MARKS: Final = {
     State.AS_TESTED: "NOT FULLY TESTED",
     State.NOT_TRUSTWORTHY: "NOT TRUSTWORTHY",
-    State.NOT_CONVERGED: "NOT CONVERGED",
 }
 """What titles say of a fit that is not trustworthy."""
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Read one table or run folder of a rig experiment as samples in SI."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +32,8 @@ from zebro_lab.tables.table_files import read_table_file
 
 SWEEP = "sweep"
 """Name of the column with the sweep number."""
+
+FOLLOWS = 0.97  # rank correlation of two columns, from which one is made of the other
 
 
 def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]:
@@ -87,6 +89,7 @@ class RigPart:
         lateral: Sums of the lateral force of each run, see `lateral_sums`; None without one.
         angles: Angles of the discs; None where none are recorded, or they cannot be used.
         force_sd: Standard deviation of each row's traction, shape (n,) [N]; None where not stated.
+        others: Columns that the map does not use, by header, shape (n,) each.
     """
 
     path: Path
@@ -104,6 +107,7 @@ class RigPart:
     lateral: Array | None = None
     angles: DiscAngles | None = None
     force_sd: Array | None = None
+    others: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -131,6 +135,7 @@ class RigPart:
             lateral=None if self.lateral is None else self.lateral[chosen],
             angles=None if self.angles is None else self.angles.of_rows(rows),
             force_sd=None if self.force_sd is None else self.force_sd[rows],
+            others={name: values[rows] for name, values in self.others.items()},
         )
 
 
@@ -181,6 +186,7 @@ def read_part(
         lateral=lateral_sums(table, pressed, force, runs.index, len(runs.names)),
         angles=angles,
         force_sd=force_sd,
+        others={} if source.is_run_folder else table.unused(),
     )
 
 
@@ -210,7 +216,8 @@ def _run_folder_table(
 def joined_samples(parts: Sequence[RigPart]) -> SlipSamples:
     """Join the samples of all parts, runs numbered throughout.
 
-    Times are kept only if all parts have them, angles of a disc and standard deviations likewise.
+    Times are kept only if all parts have them, angles of a disc and standard deviations likewise;
+    and unused columns, if their means differ between runs more than they vary within them.
     """
     first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
     timed = [part.time for part in parts if part.time is not None]
@@ -227,7 +234,49 @@ def joined_samples(parts: Sequence[RigPart]) -> SlipSamples:
         time=np.concatenate(timed) if len(timed) == len(parts) else None,
         angles=joined_angles([part.angles for part in parts])[0],
         force_sd=np.concatenate(stated) if len(stated) == len(parts) else None,
+        others=_differing(parts),
     )
+
+
+def _differing(parts: Sequence[RigPart]) -> dict[str, Array]:
+    """Join the unused columns that all parts have, and that differ between runs.
+
+    Left out are those that follow a column that is used: a coefficient, a force in another unit.
+    """
+    shared = set.intersection(*(set(part.others) for part in parts))
+    used = [
+        np.concatenate([_run_means(part, values(part)) for part in parts])
+        for values in (
+            lambda part: part.slip.ratio,
+            lambda part: part.normal_force,
+            lambda part: part.traction_force,
+            lambda part: part.traction_force / np.maximum(part.normal_force, 1e-9),
+        )
+    ]
+    found = {}
+    for name in sorted(shared):
+        means = [_run_means(part, part.others[name]) for part in parts]
+        within = np.concatenate([
+            (part.others[name] - mean[part.runs.index]) ** 2
+            for part, mean in zip(parts, means, strict=True)
+        ])  # fmt: skip
+        of_runs = np.concatenate(means)
+        if np.var(of_runs) <= np.mean(within):
+            continue
+        if not any(np.ptp(each) and abs(_correlation(of_runs, each)) > FOLLOWS for each in used):
+            found[name] = np.concatenate([part.others[name] for part in parts])
+    return found
+
+
+def _run_means(part: RigPart, values: Array) -> Array:
+    """Average values (n,) over each run of a part, shape (n_runs,)."""
+    return np.bincount(part.runs.index, values) / np.bincount(part.runs.index)
+
+
+def _correlation(first: Array, second: Array) -> float:
+    """Return the rank correlation of two arrays, which a curve between them does not lower [-]."""
+    ranks = [np.argsort(np.argsort(each)) for each in (first, second)]
+    return float(np.corrcoef(*ranks)[0, 1])
 
 
 def joined_source(parts: Sequence[RigPart]) -> str:

@@ -17,9 +17,9 @@ from model.bayes.law_scores import LawScores
 from model.bayes.preview import Preview
 from model.bayes.prior_conflict import PriorShift
 from model.bayes.run_out import DiscRunOut, RunOut
-from model.bayes.verdict import State
+from model.bayes.verdict import MEANINGS, State
 from model.counted import counted
-from zebro_lab.calibration.advice import advice_text
+from zebro_lab.calibration.advice import advice_texts
 from zebro_lab.calibration.law_table import sentence, signed
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.files.source_names import is_simulated
@@ -315,28 +315,29 @@ def _print_quality(console: Console, calibration: Calibration) -> None:
         console.print(plain(line))
 
 
-_MARKS = {Outcome.PASSED: "ok  ", Outcome.FAILED: "FAIL", Outcome.NOT_TESTABLE: "--  "}
+_ANSWERS = {Outcome.PASSED: "Yes:", Outcome.FAILED: "NO:", Outcome.NOT_TESTABLE: "Cannot be told:"}
 _STYLES = {State.TRUSTWORTHY: "bold green", State.AS_TESTED: "bold yellow"}
 
 
 def _print_verdict(console: Console, calibration: Calibration) -> None:
-    """Print verdict, checks and advice; if parameters are weak, also peak and slope by load."""
+    """Print verdict, the eight questions with their answers, and what to do next."""
     verdict = calibration.verdict
     style = _STYLES.get(verdict.state, "bold red")
     console.print(Text("\nverdict: " + verdict.headline(), style=style))
-    for check in verdict.checks:
-        console.print(plain(f"  {_MARKS[check.outcome]} {check.name}: {check.evidence}"))
+    console.print(plain(f"  That is: {MEANINGS[verdict.state]}."))
+    for note in verdict.notes:
+        console.print(plain(f"  note: {note}"))
+    for number, check in enumerate(verdict.checks, 1):
+        answer = f"  {number} {check.name} {_ANSWERS[check.outcome]} {check.evidence}"
+        console.print(plain(answer), style="bold" if check.failed else None)
     if verdict.weak:
-        for load, row in zip(calibration.levels, calibration.curves, strict=True):
-            known = {e.parameter.symbol: e for e in row}
-            force, slope = known["F_max"], known["BCD"]
-            console.print(
-                Text(
-                    f"  at {load:.4g} N: peak force within tested slip {force.median:.4g} N "
-                    f"({_interval(force)}), initial slope {slope.median:.4g} N ({_interval(slope)})"
-                )
+        console.print(
+            plain(
+                f"  Data hardly tell {', '.join(verdict.weak)} apart from the priors; what they "
+                "tell are F_max and BCD above, the largest force and the slope."
             )
-    for step in verdict.next_steps():
-        first, *others = advice_text(step).split("\n")
+        )
+    for text in advice_texts(calibration):
+        first, *others = text.split("\n")
         for line in (f"next: {first}", *(f"  {other}" for other in others)):
             console.print(plain(f"  {line}"), soft_wrap=True)

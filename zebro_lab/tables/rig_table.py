@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from model.arrays import Array
@@ -78,6 +79,21 @@ class RigTable:
         )
         self.raw.require_finite(source.name, values, expected, rows=self.rows)
         return values
+
+    def unused(self) -> dict[str, Array]:
+        """Return the kept rows of columns that are not mapped, by header, shape (n,) each.
+
+        Those that separate runs, that are no numbers, or that lack some, are left out.
+        """
+        used = {source.name for name in CANONICAL if (source := self.source_of(name))}
+        found = {}
+        for name, cells in self.raw.columns.items():
+            if name in used or name in self.columns.runs.by or name in self.raw.repeated:
+                continue
+            values = pd.to_numeric(cells, errors="coerce").to_numpy(dtype=float)[self.rows]
+            if np.isfinite(values).all():
+                found[name] = values
+        return found
 
     def texts(self, name: str) -> NDArray[np.object_]:
         """Return the kept rows of a canonical column as in the file, not converted, shape (n,).

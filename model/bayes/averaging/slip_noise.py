@@ -13,12 +13,12 @@ ENDLESS = 1e9  # degrees of freedom of a variance that is known
 def slip_noise_variance(samples: SlipSamples) -> Array:
     r"""Estimate the variance of the slip sensors' white noise, for each run.
 
-    The estimate is the nugget of the variogram: half the variance of the differences at lag 1 and
-    2, extrapolated to lag 0, :math:`2\gamma_1 - \gamma_2`. Slow wander and steady sweeps cancel in
-    it. Its sampling variance for white noise of variance :math:`\sigma^2` is :math:`7\sigma^4/n`
-    with n samples; estimates that scatter by no more between runs are replaced by one typical
-    value, others are shrunk towards it. Runs of fewer than 8 samples have the typical value. If all
-    runs are that short, the noise variance is zero.
+    The estimate is a nugget: the mean squares :math:`S_l` of second differences over l = 1 and 2
+    samples, extrapolated to none, :math:`(2 S_1 - S_2)/6`. Slow wander cancels in it, and so do
+    sweeps, those that turn too. Its sampling variance for white noise of variance
+    :math:`\sigma^2` is :math:`13\sigma^4/n` with n samples; estimates that scatter by no more
+    between runs are replaced by one typical value, others are shrunk towards it. Runs of fewer than
+    8 samples have the typical value. If all runs are that short, the noise variance is zero.
 
     Args:
         samples: The samples.
@@ -40,10 +40,10 @@ def noise_and_freedom(samples: SlipSamples) -> tuple[Array, Array]:
     if not enough.any():
         return np.zeros(samples.n_runs), np.full(samples.n_runs, ENDLESS)
     nuggets = np.array([_nugget(samples.slip[part]) for part in samples.slices()])
-    # Twice the squared mean over the variance are a chi-square's degrees of freedom: 2n/7.
-    freedom = 2 * lengths / 7
+    # Twice the squared mean over the variance are a chi-square's degrees of freedom: 2n/13.
+    freedom = 2 * lengths / 13
     typical = median_variance(nuggets[enough], freedom[enough])
-    share = own_share(nuggets, 7 * typical**2 / lengths, typical)
+    share = own_share(nuggets, 13 * typical**2 / lengths, typical)
     noise = np.where(enough, np.maximum(typical + share * (nuggets - typical), 0.0), typical)
     return noise, shrunk_freedom(freedom, np.where(enough, share, 0.0), freedom[enough].sum())
 
@@ -66,9 +66,9 @@ def _nugget(slip: Array) -> float:
     """Estimate one run's nugget [-] from its slip ratios (n,), at least 0; 0 for fewer than 8."""
     if len(slip) < 8:
         return 0.0
-    gamma_1 = 0.5 * np.var(slip[1:] - slip[:-1])
-    gamma_2 = 0.5 * np.var(slip[2:] - slip[:-2])
-    return max(0.0, float(2 * gamma_1 - gamma_2))
+    one = np.mean((slip[2:] - 2 * slip[1:-1] + slip[:-2]) ** 2)
+    two = np.mean((slip[4:] - 2 * slip[2:-2] + slip[:-4]) ** 2)
+    return max(0.0, float(2 * one - two) / 6)
 
 
 def median_variance(estimates: Array, freedom: Array) -> float:

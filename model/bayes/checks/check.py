@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One check of a fit: the claim, its outcome (passed, failed, not testable) and the evidence."""
+"""One question about a fit: its answer (yes, no, or not testable) with one number and its limit."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,7 +8,7 @@ from model.bayes.advice import Advice
 
 
 class Outcome(StrEnum):
-    """Outcome of a check."""
+    """Answer to a question that is yes for sound data."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -17,56 +17,49 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True)
 class Check:
-    """One check of a fit.
+    """A question about a fit, answered.
 
     Attributes:
-        name: Claim that is checked, as text.
-        outcome: Whether the claim holds, does not, or cannot be tested with these data.
-        evidence: Measured value and its limit, or why these data cannot test the claim, as text.
-        advice: What to do when the claim does not hold, or to test it; None if there is nothing.
-        untested: What a headline calls that which cannot be tested, with the reason in brackets;
-            empty unless `outcome` is not testable.
-        cause: What a failed check has found to be wrong, as text; empty where it has not.
+        name: The question, as text.
+        outcome: Whether the answer is yes, no, or these data cannot tell.
+        evidence: The number that decides and its limit, or why these data cannot tell, as text.
+        advice: What to do where the answer is not yes, the most useful first.
+        untested: What a headline calls that which these data cannot tell; empty otherwise.
     """
 
     name: str
     outcome: Outcome
     evidence: str
-    advice: Advice | None = None
+    advice: tuple[Advice, ...] = ()
     untested: str = ""
-    cause: str = ""
-
-    @property
-    def passed(self) -> bool:
-        """Whether the claim was tested and holds."""
-        return self.outcome is Outcome.PASSED
 
     @property
     def failed(self) -> bool:
-        """Whether the claim was tested and does not hold."""
+        """Whether the question could be answered and the answer is no."""
         return self.outcome is Outcome.FAILED
 
 
-def decided(name: str, holds: bool, evidence: str, advice: Advice | None = None) -> Check:
-    """Return a check that the data can make.
+def decided(name: str, holds: bool, evidence: str, *advice: Advice) -> Check:
+    """Return a question that these data answer.
 
     Args:
-        name: Claim that is checked.
-        holds: Whether it holds.
-        evidence: Measured value and its limit.
-        advice: What to do when it does not hold.
+        name: The question.
+        holds: Whether the answer is yes.
+        evidence: The number that decides, and its limit.
+        advice: What to do where it is no.
     """
-    return Check(name, Outcome.PASSED if holds else Outcome.FAILED, evidence, advice)
+    if holds:
+        return Check(name, Outcome.PASSED, evidence)
+    return Check(name, Outcome.FAILED, evidence, advice)
 
 
-def not_testable(name: str, why: str, *, untested: str, advice: Advice | None = None) -> Check:
-    """Return a check that these data cannot make.
+def not_testable(name: str, why: str, *advice: Advice, untested: str) -> Check:
+    """Return a question that these data cannot answer.
 
     Args:
-        name: Claim that is checked.
-        why: Why these data cannot test it, as text.
-        untested: What a headline calls it, with the reason in brackets.
-        advice: What to measure so that it can be tested.
+        name: The question.
+        why: Why not, as text.
+        advice: What to measure so that it can be answered.
+        untested: What a headline calls it.
     """
-    evidence = f"{Outcome.NOT_TESTABLE}: {why}"
-    return Check(name, Outcome.NOT_TESTABLE, evidence, advice, untested)
+    return Check(name, Outcome.NOT_TESTABLE, why, advice, untested)

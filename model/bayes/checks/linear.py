@@ -25,10 +25,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import solve_triangular
-from scipy.special import stdtr
+from scipy.special import fdtrc
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.checks.causes import Effect
 from model.bayes.likelihood import PredictedForces, covariance_factors, predict_blocks
 from model.bayes.posterior import SlipPosterior
 from model.slip.law import SlipLaw
@@ -39,23 +40,21 @@ SLIP_STEP = 1e-5  # of the slip ratio
 
 @dataclass(frozen=True)
 class Term:
-    """Estimate of a term that the model lacks.
+    """Estimate of m terms that the model lacks, together.
 
     Attributes:
-        size: Estimated multiple of the term.
-        sd: Its standard deviation: that of the model, or from the scatter between runs if larger.
-        p: Two-sided p-value of a multiple of zero, by Student's t. Its degrees of freedom are the
-            number of runs less one, or of one run the number of blocks [-].
+        size: Estimated multiple of each, shape (m,).
+        sd: Their standard deviations: those of the model, or from the scatter between runs if
+            larger, shape (m,).
+        p: Probability of multiples as far from zero by chance, by the F distribution. Its degrees
+            of freedom are the number of runs less m, or of one run the number of blocks [-].
+        gain: Twice the log likelihood that they explain [-].
     """
 
-    size: float
-    sd: float
+    size: Array
+    sd: Array
     p: float
-
-    @property
-    def t(self) -> float:
-        """Size over standard deviation [-]."""
-        return self.size / self.sd
+    gain: float
 
 
 @dataclass(frozen=True)
@@ -75,6 +74,8 @@ class Linearised:
         rest: r without what the fit could absorb, shape (n + d + 1,) [-].
         values: Law and measurement parameters at the centre, shape (k + 11,).
         z: Coordinates of the centre, shape (d,).
+        features: Derivative by z of the logarithms of the slope at zero slip and of the force at
+            the largest slip, both at the median load, shape (2, d) [-].
     """
 
     blocks: SlipBlocks
@@ -87,6 +88,7 @@ class Linearised:
     rest: Array
     values: Array
     z: Array
+    features: Array
 
     def project(self, terms: Array) -> Array:
         """Whiten terms, shape (n, m) [N], and take out what A absorbs, (n + d + 1, m) [-]."""
@@ -113,35 +115,57 @@ class Linearised:
         parts = np.split(left, self.blocks.run_starts()[1:-1])
         return np.concatenate([L @ part for L, part in zip(self.factors, parts, strict=True)])
 
-    def test(self, term: Array) -> Term:
-        """Estimate the multiple of a term, shape (n,) [N], that the data ask for beside the fit.
+    def effect(self, term: Array) -> Effect:
+        """Compute how far a term in the forces, shape (n,) [N], moves the answer.
 
-        A term that the fit absorbs to one part in a thousand has the size 0, an infinite standard
-        deviation and the p-value 1.
+        The change of a force is that of the curve, or what is left beside the curve if that is
+        more: its root mean square over the largest predicted force.
         """
-        white = whiten(self.blocks, term[:, None], self.factors)[:, 0]
-        left = self.project(term[:, None])[:, 0]
-        information = float(left @ left)
-        if information <= 1e-6 * float(white @ white):
-            return Term(0.0, float("inf"), 1.0)
-        size = float(left @ self.rest) / information
-        sd = 1 / np.sqrt(information)
-        n_runs = self.blocks.n_runs
-        if n_runs > 1:
-            own = left * (self.rest - size * left)
-            by_run = np.bincount(self.blocks.run, own[: len(self.blocks)], minlength=n_runs)
-            scatter = np.sqrt(np.sum(by_run**2) * n_runs / (n_runs - 1)) / information
-            sd = max(sd, float(scatter))
-        freedom = max(n_runs - 1, 1) if n_runs > 1 else len(self.blocks)
-        return Term(size, sd, float(2 * stdtr(freedom, -abs(size / sd))))
+        moved = self.features @ self.absorbed(term)
+        peak = max(float(np.abs(self.predicted.force).max()), 1e-300)
+        left = float(np.sqrt(np.mean(self.beyond_fit(term) ** 2))) / peak
+        return Effect(float(moved[0]), max(abs(float(moved[1])), left))
+
+    def test(self, terms: Array) -> Term:
+        """Estimate the multiples of terms, shape (n, m) [N], that the data ask for beside the fit.
+
+        Terms that the fit absorbs to one part in a thousand have the size 0 and the p-value 1.
+        """
+        white = whiten(self.blocks, terms, self.factors)
+        left = self.project(terms)
+        scale = np.sqrt(np.maximum(np.sum(white**2, axis=0), 1e-300))
+        D = left / scale
+        size, vectors = np.linalg.eigh(D.T @ D)
+        kept = size > 1e-6
+        if not kept.any():
+            return Term(np.zeros(len(scale)), np.full(len(scale), np.inf), 1.0, 0.0)
+        inverse = (vectors[:, kept] / size[kept]) @ vectors[:, kept].T
+        found = inverse @ (D.T @ self.rest)
+        gain, rank = float(found @ (D.T @ self.rest)), int(kept.sum())
+        variance, wald, n_runs = inverse, gain, self.blocks.n_runs
+        if n_runs > rank + 1:
+            own = D * (self.rest - D @ found)[:, None]
+            by_run = np.add.reduceat(own[: len(self.blocks)], self.blocks.run_starts()[:-1])
+            scatter = inverse @ (by_run.T @ by_run) @ inverse * n_runs / (n_runs - 1)
+            wald = min(wald, float(found @ np.linalg.pinv(scatter, 1e-9) @ found))
+            variance = np.maximum(np.diag(variance), np.diag(scatter))
+        else:
+            variance = np.diag(variance)
+        freedom = max(n_runs - rank, 1) if n_runs > 1 else max(len(self.blocks) - rank, 1)
+        p = float(fdtrc(rank, freedom, max(wald, 0.0) / rank))
+        return Term(found / scale, np.sqrt(variance) / scale, p, gain)
 
 
-def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
+def linearise(posterior: SlipPosterior, z: Array, *, zero_stability: float) -> Linearised:
     """Linearise a fit around the mean of posterior draws.
+
+    Zeros of runs scatter by no more than the load cell's zero stability here: what the fit took for
+    a larger scatter may have another cause.
 
     Args:
         posterior: The posterior density, with blocks, law and priors.
         z: Draws of its coordinates, shape (w, d).
+        zero_stability: Scale of the zeros between runs that the load cell has [N].
 
     Raises:
         LinAlgError: The covariance of a run's blocks is singular.
@@ -155,7 +179,8 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
     predicted = every.of_vector(0)
     d = len(centre)
     jacobian = (every.force[1 : d + 1] - every.force[d + 1 :]).T / (2 * STEP)
-    factors = covariance_factors(blocks, predicted, values[0])
+    steady = np.append(values[0, :-1], min(float(values[0, -1]), zero_stability))
+    factors = covariance_factors(blocks, predicted, steady)
     residual = blocks.traction_force - predicted.force
     ripple = predict_blocks(blocks, law, values[:1], sine=True).force[0] - predicted.force
     white = whiten(blocks, np.column_stack([residual, jacobian, ripple]), factors)
@@ -175,7 +200,34 @@ def linearise(posterior: SlipPosterior, z: Array) -> Linearised:
         right - basis @ (basis.T @ right),
         values[0],
         centre,
+        _features(posterior, values).T,
     )
+
+
+def curve_features(law: SlipLaw, values: Array, blocks: SlipBlocks) -> Array:
+    """Compute the logarithms of the slope at zero slip and of the force at the largest slip.
+
+    Both are at the median load; shape (w, 2).
+
+    Args:
+        law: The slip law, of k parameters.
+        values: Its parameters, shape (w, k).
+        blocks: The block means, whose loads and slips count.
+    """
+    load, far = float(np.median(blocks.normal_force)), float(np.abs(blocks.slip).max())
+    slope = law.slip_derivative(0.0, load, values.T)
+    with np.errstate(invalid="ignore", divide="ignore"):  # a curve may have fallen to zero there
+        return np.log(np.stack([slope, law.force(far, load, values.T)], axis=-1))
+
+
+def _features(posterior: SlipPosterior, values: Array) -> Array:
+    """Compute the derivative of `curve_features` by each coordinate, shape (d, 2) [-].
+
+    `values` are those at the centre, then at a step of each coordinate up, then down.
+    """
+    k, d = len(posterior.law.parameters), len(values) // 2
+    features = curve_features(posterior.law, values[:, :k], posterior.blocks)
+    return np.nan_to_num((features[1 : d + 1] - features[d + 1 :]) / (2 * STEP))
 
 
 def _per_slip(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Faults that show in single samples and not in their means: outliers, clipping, delay, sign."""
+"""Faults that show in single samples and not in their means."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtr
 
 from model.arrays import Array
 from model.bayes.averaging.slip_noise import slip_noise_variance
@@ -14,15 +13,21 @@ from model.slip.law import SlipLaw
 from model.slip.samples import SlipSamples
 
 OUTLYING = 8.0  # robust standard deviations of a run, which no Gaussian sample reaches
+OUTLYING_MEAN = 6.0  # of a table of means, whose rows are few
 FARTHEST = 4.5  # standard deviations of slip noise: one sample in 150,000 lies beyond
 LONG_RUN = 50  # samples, from which a run shows its own scatter
 FEWEST_CLIPPED = 8
+FEWEST_CLIPPED_MEANS = 4  # of a table of up to `FEW_ROWS` means, which hardly repeat
+FEW_ROWS = 300
 CLIPPED_EXCESS = 4.0  # samples at the extreme over samples at the next level
 SLIPPING = 0.3  # of the largest traction over load: beyond, a zero error hides no sign
 OPPOSED = 0.9  # share of a run's samples
-PIECE = 20  # samples of the shortest piece of a run whose scatter tells how sure a delay is
-FEWEST_OUTLIERS = 3
-OUTLIER_SHARE = 1e-4  # of the samples
+STRETCH = 6  # equal successive samples that are looked at
+UNLIKELY = 4.0  # times as many such stretches as by chance
+PROMINENT = 15.0  # times the power of the frequencies beside
+LEAST_SWING = 0.01  # amplitude over traction
+FEWEST_SWINGING = 3  # runs
+STEADY = 0.1  # change of slip within a run that is no sweep, over the largest slip
 
 
 @dataclass(frozen=True)
@@ -33,18 +38,13 @@ class Outliers:
         count: Number of such samples.
         share: Their share of all samples [-].
         size: Median of their absolute leaps; 0 if there are none [N].
-        run: Index of the run with the most of them; 0 if there are none.
+        runs: Indices of the runs that have some, those with the most first.
     """
 
     count: int
     share: float
     size: float
-    run: int
-
-    @property
-    def matter(self) -> bool:
-        """Whether there are `FEWEST_OUTLIERS` and `OUTLIER_SHARE` of the samples, or more."""
-        return self.count >= FEWEST_OUTLIERS and self.share >= OUTLIER_SHARE
+    runs: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,8 @@ def outliers(samples: SlipSamples, residual: Array, by_slip: Array) -> Outliers:
     A leap is the residual less the mean of its neighbours. It is too large beyond `OUTLYING` robust
     deviations and beyond the reach of slip noise in the three. A robust deviation is 1.4826 times
     the median absolute leap of the run or, of runs shorter than `LONG_RUN`, of all samples that
-    leap, and no less than half of that. A leap smaller than one beside it does not count.
+    leap, and no less than half of that. A leap smaller than one beside it does not count. Of means
+    of trials, which have no neighbours, the residual itself less the median one is the leap.
 
     Args:
         samples: The samples.
@@ -126,6 +127,8 @@ def outliers(samples: SlipSamples, residual: Array, by_slip: Array) -> Outliers:
         by_slip: How far noise of slip may move each residual, shape (n,) [N].
     """
     leap, reach = np.zeros(len(samples)), np.zeros(len(samples))
+    if len(samples) <= 2 * samples.n_runs:  # means of trials: those of a curve stand alone
+        leap = residual - np.median(residual)
     for part in samples.slices():
         own, square = residual[part], by_slip[part] ** 2
         if len(own) > 2:
@@ -136,13 +139,14 @@ def outliers(samples: SlipSamples, residual: Array, by_slip: Array) -> Outliers:
     every = 1.4826 * float(np.median(size[leap != 0])) if leap.any() else 0.0
     own = np.array([1.4826 * np.median(size[part]) for part in samples.slices()])
     own = np.where(long, np.maximum(own, 0.5 * every), every)
-    limit = np.maximum(OUTLYING * own[samples.run], reach)
+    means = len(samples) <= 2 * samples.n_runs
+    limit = np.maximum((OUTLYING_MEAN if means else OUTLYING) * own[samples.run], reach)
     # A leap of one sample makes two of half the size, of the other sign, beside it.
-    far = (size > limit) & (limit > 0) & _is_peak(size)
-    count = int(far.sum())
-    run = int(np.bincount(samples.run[far], minlength=samples.n_runs).argmax()) if count else 0
-    typical = float(np.median(size[far])) if count else 0.0
-    return Outliers(count, count / len(samples), typical, run)
+    far = (size > limit) & (limit > 0) & (_is_peak(size) | means)
+    count = np.bincount(samples.run[far], minlength=samples.n_runs)
+    runs = [int(i) for i in np.argsort(-count, kind="stable") if count[i]]
+    typical = float(np.median(size[far])) if runs else 0.0
+    return Outliers(int(far.sum()), float(np.mean(far)), typical, tuple(runs))
 
 
 def _is_peak(size: Array) -> NDArray[np.bool_]:
@@ -155,8 +159,9 @@ def clipped(force: Array) -> Clipped | None:
     """Find a force that stops at a limit: many samples exactly at the extreme, few just below.
 
     Of a cell whose readings are counts every level has many samples; at a limit there are
-    `FEWEST_CLIPPED` or more, and over `CLIPPED_EXCESS` times as many as at either of the next two
-    levels. A maximum counts if it is positive, a minimum if it is negative.
+    `FEWEST_CLIPPED` or more, or `FEWEST_CLIPPED_MEANS` of few, and over `CLIPPED_EXCESS` times as
+    many as at either of the next two levels. A maximum counts if it is positive, a minimum if it is
+    negative.
 
     Args:
         force: Measured force of each sample, shape (n,) [N].
@@ -170,65 +175,126 @@ def clipped(force: Array) -> Clipped | None:
         if len(levels) < 3 or levels[-1] <= 0:
             continue
         beside = CLIPPED_EXCESS * counts[-3:-1].max()
-        if counts[-1] >= FEWEST_CLIPPED and counts[-1] > beside:
+        fewest = FEWEST_CLIPPED if len(force) > FEW_ROWS else FEWEST_CLIPPED_MEANS
+        if counts[-1] >= fewest and counts[-1] > beside:
             return Clipped(sign * float(levels[-1]), int(counts[-1]))
     return None
 
 
-@dataclass(frozen=True)
-class Delay:
-    """Delay of traction behind slip.
+def frozen(force: Array, run: NDArray[np.intp]) -> float:
+    """Compute the share of samples in stretches of equal values that chance does not make [-].
 
-    Attributes:
-        steps: Delay in samples, positive where traction comes later.
-        t: Delay over its standard deviation, from the scatter between pieces of runs [-].
-        p: Its two-sided p-value, by Student's t of the number of pieces that count [-].
-    """
-
-    steps: float
-    t: float
-    p: float
-
-
-def delay(samples: SlipSamples, residual: Array, slope: Array, *, span: int) -> Delay:
-    r"""Estimate the delay of traction behind slip from how residuals follow the change of slip.
-
-    With traction late by a time d, the residual is :math:`-d\,f_\kappa\,\dot\kappa` to first order.
-    Residuals are averaged over `span` samples to either side, and slip changes from the mean of
-    those before to that of those after: noise of the slip sensors cancels in their product.
+    Readings of a coarse converter repeat too: with the share e of equal neighbours, a stretch of
+    `STRETCH` or more has the probability e to the power of its length. The share counts where such
+    stretches are `UNLIKELY` by that.
 
     Args:
-        samples: The samples.
-        residual: Residual of each sample, shape (n,) [N].
-        slope: Slope of force in slip, shape (n,) [N].
-        span: Samples to either side, at least 1.
-
-    Returns:
-        The delay; 0 with a p-value of 1 where slip changes in no run, or the runs that hold two
-        windows have fewer than three pieces.
+        force: Measured force, shape (n,) [N].
+        run: Run of each sample, shape (n,).
     """
-    upper, lower = [], []
-    window = 2 * span + 1
-    change = np.concatenate([-np.ones(span), [0.0], np.ones(span)]) / (span * (span + 1))
-    for part in samples.slices():
-        if part.stop - part.start < 2 * window:
-            continue
-        rate = np.correlate(samples.slip[part], change, "valid")
-        rate = rate * np.correlate(slope[part], np.ones(window) / window, "valid")
-        mean = np.correlate(residual[part], np.ones(window) / window, "valid")
-        mean = mean - mean.mean()
-        pieces = max(1, len(mean) // max(2 * window, PIECE))
-        for r, e in zip(np.array_split(rate, pieces), np.array_split(mean, pieces), strict=True):
-            upper.append(-float(r @ e))
-            lower.append(float(r @ r))
-    u, v = np.array(upper), np.array(lower)
-    if len(u) < 3 or v.sum() <= 0:
-        return Delay(0.0, 0.0, 1.0)
-    steps = float(u.sum() / v.sum())
-    freedom = max(float(v.sum() ** 2 / np.sum(v**2)) - 1, 1.0)  # of pieces that count
-    sd = float(np.sqrt(np.sum((u - steps * v) ** 2) * (freedom + 1) / freedom) / v.sum())
-    t = steps / sd if sd > 0 else 0.0
-    return Delay(steps, t, float(2 * stdtr(freedom, -abs(t))))
+    same = (np.diff(force) == 0) & (np.diff(run) == 0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], same.astype(int), [0]])))
+    lengths = edges[1::2] - edges[::2] + 1 if len(edges) else np.array([0])
+    long = lengths[lengths >= STRETCH]
+    short = lengths[lengths < STRETCH]
+    pairs = max(len(same) - int(np.sum(long - 1)), 1)
+    equal = (float(np.sum(np.maximum(short - 1, 0))) + 1) / pairs
+    expected = len(force) * equal ** (STRETCH - 1)
+    return float(np.sum(long)) / len(force) if len(long) > UNLIKELY * (1 + expected) else 0.0
+
+
+@dataclass(frozen=True)
+class Oscillation:
+    """Oscillation of traction within runs.
+
+    Attributes:
+        amplitude: Amplitude over the traction, of the middle run that oscillates [-].
+        frequency: Its frequency, in Hz where there are times, else in periods a sample.
+        runs: Number of runs that oscillate.
+        in_slip: Whether measured slip swings alike, or the force follows the slope of the curve
+            rather than its height: it is the slip that swings.
+    """
+
+    amplitude: float
+    frequency: float
+    runs: int
+    in_slip: bool
+
+
+def oscillation(samples: SlipSamples, residual: Array, slope: Array) -> Oscillation | None:
+    """Find an oscillation of traction within runs; None unless `FEWEST_SWINGING` have one.
+
+    A run oscillates where a frequency has `PROMINENT` times the power of those beside it, more than
+    noise of any memory has at one of them, and the amplitude is `LEAST_SWING` of its traction.
+
+    Args:
+        samples: The samples, n of them.
+        residual: Measured minus predicted traction, shape (n,) [N].
+        slope: Slope of the curve in slip, shape (n,) [N].
+    """
+    found = [
+        swing
+        for part in samples.slices()
+        if (swing := _swing(samples, residual, slope, part)) is not None
+    ]
+    if len(found) < max(FEWEST_SWINGING, 0.1 * samples.n_runs):
+        return None
+    amplitude, level, steep, by_slip, frequency = np.array(found).T
+    follows = _spread(amplitude / level) > _spread(amplitude / np.maximum(steep, 1e-300))
+    in_slip = bool(np.median(by_slip / amplitude) > 0.5 or follows)
+    return Oscillation(
+        float(np.median(amplitude / level)), float(np.median(frequency)), len(found), in_slip
+    )
+
+
+def _swing(
+    samples: SlipSamples, residual: Array, slope: Array, part: slice
+) -> tuple[float, float, float, float, float] | None:
+    """Return amplitude, mean traction, slope, amplitude by slip [N] and frequency of a run's swing.
+
+    None where it has none, and in sweeps. The amplitude is half of what 95 % of the residuals span.
+    """
+    n = part.stop - part.start
+    window, trend = np.hanning(n), np.linspace(-1, 1, n)
+    swept = 2 * abs(np.polyfit(trend, samples.slip[part], 1)[0]) if n > 1 else 0.0
+    if n < LONG_RUN or max(swept, np.std(samples.slip[part])) > STEADY * np.abs(samples.slip).max():
+        return None
+
+    def detrended(values: Array) -> Array:
+        return values - np.polyval(np.polyfit(trend, values, 2), trend)
+
+    force = detrended(residual[part])
+    spectrum = np.abs(np.fft.rfft(force * window)) ** 2
+    height = spectrum / _beside(spectrum)
+    height[:3] = 0
+    top = int(np.argmax(height))
+    span, level = (
+        np.quantile(force, [0.025, 0.975]),
+        float(np.mean(np.abs(samples.traction_force[part]))),
+    )
+    amplitude = 0.5 * float(span[1] - span[0])
+    if height[top] < PROMINENT or level == 0 or amplitude < LEAST_SWING * level:
+        return None
+    fine = top + np.linspace(-1, 1, 41)
+    waves = np.exp(-2j * np.pi * np.outer(fine, np.arange(n)) / n)
+    best = int(np.argmax(np.abs(waves @ (force * window))))
+    slip = 2 * abs(waves[best] @ (detrended(samples.slip[part]) * window)) / window.sum()
+    steep = float(np.mean(np.abs(slope[part])))
+    step = 1.0 if samples.time is None else float(np.median(np.diff(samples.time[part])))
+    return amplitude, level, steep, float(slip) * steep, float(fine[best]) / n / step
+
+
+def _beside(spectrum: Array) -> Array:
+    """Return the typical power of 12 frequencies beside each one but its two neighbours, (n,)."""
+    padded = np.pad(spectrum, 8, mode="reflect" if len(spectrum) > 8 else "edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 17)
+    beside = np.concatenate([windows[:, :6], windows[:, -6:]], axis=1)
+    return np.maximum(np.median(beside, axis=1) / np.log(2), 1e-300)
+
+
+def _spread(ratio: Array) -> float:
+    """Return the spread of the logarithm of ratios [-]."""
+    return float(np.std(np.log(np.maximum(ratio, 1e-300))))
 
 
 def opposed_runs(samples: SlipSamples) -> NDArray[np.bool_]:

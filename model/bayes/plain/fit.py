@@ -131,32 +131,41 @@ class PlainFit:
         rows = f"{len(self.rows)} {'means of runs' if self.of_run_means else 'rows'}"
         return f"least squares of {rows}, {' and '.join(texts)} at a load of {self.load:.4g} N"
 
-    def moved(self, blocks: SlipBlocks, fewer: SlipBlocks) -> float:
-        """Compute how far the curve's features move where rows are other means of the samples.
+    def moved_by_averaging(self, slip: Array, blocks: SlipBlocks) -> float:
+        """Compute how far averaging moves the curve's features where nothing errs.
+
+        The curve itself, at slip ratios without noise, is averaged over blocks, and fitted to the
+        means with Gaussian slip of the spread within each block, as the posterior does.
 
         Args:
+            slip: Slip ratios without noise, one a sample, shape (n,) [-].
             blocks: Block means of the samples.
-            fewer: Other ones.
 
         Returns:
-            The larger difference over the standard deviation of the resampled fits, and at least
-            `GAIN_SD` [-].
+            The larger difference from the features of this curve over the standard deviation of
+            the resampled fits, and at least `GAIN_SD` [-].
         """
-        sd = np.hypot(self.features(self.draws).std(axis=0), GAIN_SD)
-        first, second = (self.features(self._refitted(each)) for each in (blocks, fewer))
-        return float(np.max(np.abs(first - second) / sd))
+        starts = np.cumsum(blocks.count) - blocks.count
+        load = blocks.run_mean(blocks.normal_force)[blocks.run]
+        every = np.repeat(load, blocks.count)
 
-    def _refitted(self, blocks: SlipBlocks) -> Array:
-        """Fit the law to block means, from here on; return its parameters, shape (k,).
+        def mean(values: Array) -> Array:
+            """Average one value a sample over each block."""
+            return np.add.reduceat(values, starts) / blocks.count
 
-        Not robustly: how far residuals are out depends on how many samples are averaged.
-        """
+        middle = mean(slip)
+        spread = np.sqrt(np.maximum(mean(slip**2) - middle**2, 0.0))
+        force = mean(self.law.force(self.true_slip(slip), every, self.values))
         rows = replace(
-            self.rows, slip=blocks.slip, load=blocks.run_mean(blocks.normal_force)[blocks.run],
-            force=blocks.traction_force, test=blocks.run,
+            self.rows, slip=middle, load=load, force=force, test=blocks.run, spread=spread,
+            offset_a_run=False,
         )  # fmt: skip
         problem = replace(self.problem, rows=rows)
-        return problem.values(problem.climb(self.x, most=30, loss="linear"))
+        known = self.x.copy()
+        known[-2] = 0.0
+        found = problem.values(problem.climb(known, most=30, loss="linear"))
+        sd = np.hypot(self.features(self.draws).std(axis=0), GAIN_SD)
+        return float(np.max(np.abs(self.features(found) - self.features(self.values)) / sd))
 
 
 def plain_fit(

@@ -35,6 +35,8 @@ class PlainRows:
         test: Index of each row's independent test, non-decreasing from 0, shape (n,).
         definition: Definition of the slip ratios.
         offset_a_run: Whether each test has an offset of force of its own.
+        spread: Standard deviation of slip within each row, over which the curve is averaged,
+            shape (n,) [-]; None where it is not.
     """
 
     slip: Array
@@ -43,6 +45,7 @@ class PlainRows:
     test: NDArray[np.intp]
     definition: SlipDefinition
     offset_a_run: bool = False
+    spread: Array | None = None
 
     def __len__(self) -> int:
         """Return the number of rows."""

@@ -53,6 +53,13 @@ class Search:
         shift = x[-1] * self.zero_sd * slip_per_radius_error(rows.slip, rows.definition)
         with np.errstate(all="ignore"):  # a trial may be beyond all numbers
             force = self.law.force(rows.slip - shift, rows.load, self.values(x))
+            if rows.spread is not None:  # three points of a Gaussian
+                away = np.sqrt(3) * rows.spread
+                ends = [
+                    self.law.force(rows.slip - shift + side, rows.load, self.values(x))
+                    for side in (away, -away)
+                ]
+                force = (4 * force + ends[0] + ends[1]) / 6
         left = rows.force - np.nan_to_num(force)
         if rows.offset_a_run:
             return left - self._means(left)[rows.test]

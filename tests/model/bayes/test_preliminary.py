@@ -174,13 +174,20 @@ def swept(seconds, *, rate=500, correlation=0.98):
     )
 
 
-def test_a_fast_sweep_of_slip_shortens_the_blocks_to_its_pace():
-    samples = swept(1.0)
+@pytest.mark.parametrize(
+    ("seconds", "reason"),
+    [
+        (1.0, "so that slip changes little within a block"),
+        (5.0, "so that averaging hardly moves the plain fit"),
+    ],
+)
+def test_a_fast_sweep_of_slip_shortens_the_blocks_to_its_pace(seconds, reason):
+    samples = swept(seconds)
     chosen = choice(samples)
     spread = np.sqrt(block_means(samples, chosen.length).slip_wander)
     assert np.quantile(spread, 0.9) <= MAX_SLIP_SPREAD * SLIP_SCALE * 1.1
-    assert chosen.reason == "so that more blocks hardly move the plain fit"
-    assert chosen.length < chosen.correlation
+    assert chosen.reason == reason
+    assert chosen.length < MEMORIES * chosen.correlation
 
 
 def test_a_slow_sweep_keeps_the_blocks_the_noise_asks_for():

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from model.bayes.checks.faults import NOISE
 from model.bayes.drawing.laplace import LaplaceMixture, find_mode, hessian
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.posterior import LoadCell, default_priors
@@ -30,6 +29,7 @@ from rig.slip_rig.sweep import SweepPlan
 from support.quick_fits import few_starts
 from support.simulated_sweep import simulate_sweep
 
+NOISE = {"slip_error_scale", "slip_scatter", "noise_floor", "noise_correlation", "offset_spread"}
 PERFECT = RigErrors(1e-4, 1e-3)  # so that one side of zero slip is nearly Gaussian
 BASE = {"a": Normal(1.0, 2.0), "b": LogNormal(0.4, 0.5), "c": Uniform(0.0, 1.0)}
 

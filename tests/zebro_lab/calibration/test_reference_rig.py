@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from model.bayes.checks.inspection import inspect
 from scipy.stats import chi2
 
 from benchmarks.accuracy.tyre_bench import COLUMNS as TYRE
 from model.bayes.advice import TryLaws
-from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
 from model.bayes.checks.reach import RISE
 from model.bayes.cross_validation import r_squared

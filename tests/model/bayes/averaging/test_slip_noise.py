@@ -12,7 +12,7 @@ NOISE = 0.01
 @pytest.mark.parametrize("wandering", [0.0, 0.01], ids=["steady", "wandering"])
 def test_white_slip_noise_is_recovered_whatever_the_slip_does(trend, wandering):
     rng = np.random.default_rng(4)
-    true = np.linspace(0, trend, 250) + wander(rng, (40, 250), wandering, steps=60)
+    true = trend * np.abs(np.linspace(-1, 1, 250)) + wander(rng, (40, 250), wandering, steps=60)
     found = slip_noise_variance(samples(true + white(rng, true.shape, NOISE)))
     assert found.mean() == pytest.approx(NOISE**2, rel=0.1)
 
@@ -20,8 +20,7 @@ def test_white_slip_noise_is_recovered_whatever_the_slip_does(trend, wandering):
 def test_the_noise_of_many_short_runs_is_not_underrated():
     rng = np.random.default_rng(0)
     found = slip_noise_variance(samples(white(rng, (1000, 12), NOISE)))
-    # Each run's estimate is skewed: the plain median lies at 0.87.
-    assert found.mean() == pytest.approx(NOISE**2, rel=0.06)
+    assert 0.95 < found.mean() / NOISE**2 < 1.25  # estimates of 12 samples are skewed
 
 
 def test_wander_is_not_mistaken_for_noise():
@@ -33,7 +32,7 @@ def test_wander_is_not_mistaken_for_noise():
 def test_runs_may_have_sensors_of_different_noise():
     rng = np.random.default_rng(9)
     sizes = np.repeat([0.002, 0.02], 20)[:, None]
-    found = slip_noise_variance(samples(sizes * rng.standard_normal((40, 400))))
+    found = slip_noise_variance(samples(sizes * rng.standard_normal((40, 1000))))
     np.testing.assert_allclose(found[:20].mean(), 0.002**2, rtol=0.5)
     np.testing.assert_allclose(found[20:].mean(), 0.02**2, rtol=0.1)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A check passed, failed, or says what cannot be tested."""
+"""A question is answered with yes, with no and an advice, or by what cannot be told."""
 
 import pytest
 
@@ -8,16 +8,14 @@ from model.bayes.checks.check import Outcome, decided, not_testable
 
 
 @pytest.mark.parametrize("holds", [True, False])
-def test_a_claim_that_was_tested_holds_or_does_not(holds):
-    check = decided("claim", holds, "1 of 2", Advice("do"))
-    assert (check.passed, check.failed, check.untested) == (holds, not holds, "")
+def test_an_answer_has_advice_only_where_it_is_no(holds):
+    check = decided("Question?", holds, "1 of 2", Advice("do"))
+    assert (check.failed, check.untested) == (not holds, "")
+    assert check.advice == (() if holds else (Advice("do"),))
 
 
-def test_a_claim_that_was_not_tested_neither_passed_nor_failed():
-    check = not_testable("claim", "one run", untested="claim (one run)", advice=Advice("do"))
+def test_what_data_cannot_tell_is_neither_yes_nor_no():
+    check = not_testable("Question?", "one run", Advice("do"), untested="claim (one run)")
     assert check.outcome is Outcome.NOT_TESTABLE
-    assert not check.passed
     assert not check.failed
-    assert check.evidence == "not testable with these data: one run"
-    assert check.untested == "claim (one run)"
-    assert check.advice == Advice("do")
+    assert (check.evidence, check.advice) == ("one run", (Advice("do"),))

@@ -29,14 +29,15 @@ def simulate_blocks(
     r"""Simulate the traction of blocks.
 
     .. math::
-        F_{ij} = \overline{(1 + g_t)\,[f(\kappa, N) - c_r N]} + b_i + (s_0 + s_1 |\bar F|)\,u_{ij},
-        \qquad N = (1 + g_n) F_n - b_n + c F ,
+        F_{ij} = \overline{(1 + g_t)\,[f(\kappa, N) - c_r N]} + b_i + s_0 m_i\,u_{ij},
+        \qquad N = (1 + g_n) F_n - b_n + c F + z_i + e_{ij} ,
 
     averaged over the samples of block j of run i; :math:`\kappa` is the slip of the true radii, at
     the block's slip plus errors: one of the block and one that the run shares, of q times the
     standard deviations that the blocks state, and one of the block of :math:`\sigma_\kappa`;
-    :math:`b_i \sim N(0, \tau^2)`, and u is a stationary AR(1) process of unit variance and
-    correlation :math:`\rho`, new in each run.
+    :math:`b_i, z_i \sim N(0, \tau^2)`, e is the load's error, :math:`m_i` the size of the run's
+    noise, and u is a stationary AR(1) process of unit variance and correlation :math:`\rho`, new in
+    each run.
 
     Args:
         layout: The blocks; their traction is not used.
@@ -48,12 +49,15 @@ def simulate_blocks(
         The blocks with the simulated traction, all else as it was: what an experimenter knows.
     """
     k = len(law.parameters)
-    size, scatter, s_0, s_1, rho, tau = values[k + 6 :]
+    size, scatter, s_0, rho, tau = values[k + 6 :]
     own = rng.normal(0.0, np.sqrt(size**2 * layout.slip_error + scatter**2))
     shared = rng.normal(0.0, size * np.sqrt(layout.run_slip_error))
-    expected = _mean_traction(layout, law, values, layout.slip + own + shared[layout.run])
+    of_load = rng.normal(0.0, np.sqrt(layout.load_error))
+    of_load += rng.normal(0.0, tau, layout.n_runs)[layout.run]
+    pressed = replace(layout, normal_force=layout.normal_force + of_load / (1 + values[k + 1]))
+    expected = _mean_traction(pressed, law, values, layout.slip + own + shared[layout.run])
     offset = rng.normal(0.0, tau, layout.n_runs)
-    noise = (s_0 + s_1 * np.abs(expected)) * _correlated(layout, rho, rng)
+    noise = s_0 * layout.noise_size * _correlated(layout, rho, rng)
     return replace(layout, traction_force=expected + offset[layout.run] + noise)
 
 

@@ -137,11 +137,13 @@ def likely(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def named(findings: Sequence[Finding]) -> tuple[Cause, ...]:
-    """Return the causes to name, up to `MOST_NAMED`: those of the best finding, then of the next.
+    """Return the causes to name, up to `MOST_NAMED`.
+
+    They are the likelier cause of the best finding, then those of its rivals, then its other one.
 
     Args:
         findings: What `likely` returns.
     """
     first = [each.causes[0] for each in findings]
     further = [cause for each in findings for cause in each.causes[1:]]
-    return tuple(dict.fromkeys([*first[:1], *further[:1], *first[1:]]))[:MOST_NAMED]
+    return tuple(dict.fromkeys([*first, *further]))[:MOST_NAMED]

@@ -28,6 +28,10 @@ PLAIN: Final = float("inf")
 """Gain of what is plain to see in single samples."""
 HARMFUL: Final = 0.2
 """Amplitude over traction, from which a curve of means says little of an oscillating force [-]."""
+BROAD: Final = 1.0
+"""Standard deviations by which priors of a law may be too narrow: they are guesses [-]."""
+SMALL: Final = 0.2
+"""Share of the largest slip, up to which a wrong zero of slip can turn its sign [-]."""
 FAR_FROM: Final = {
     "slip_stiffness": Cause.FORCE_SCALE,
     "friction": Cause.FORCE_SCALE,
@@ -69,13 +73,17 @@ def sample_findings(
 
 
 def _signs(samples: SlipSamples) -> Iterator[Finding]:
-    """Yield runs whose traction opposes their slip."""
-    names = tuple(samples.run_names[i] for i in np.flatnonzero(opposed_runs(samples)))
+    """Yield runs whose traction opposes their slip; of small slips the zero is likelier wrong."""
+    opposed = opposed_runs(samples)
+    names = tuple(samples.run_names[i] for i in np.flatnonzero(opposed))
     if names:
         text = f"traction opposes the slip in {len(names)} of {samples.n_runs} runs"
+        largest = np.abs(samples.slip)[opposed[samples.run]].max()
+        small = largest < SMALL * np.abs(samples.slip).max()
+        causes = (Cause.SLIP_ZERO, Cause.FORCE_SCALE) if small else (Cause.FORCE_SCALE,)
         yield Finding(
-            Question.UNITS, (Cause.FORCE_SCALE,), text, PLAIN, 0.0, Effect(0.0, 1.0),
-            ExcludeRuns(f"{text} (wrong sign, or exchanged speeds)", names),
+            Question.UNITS, causes, text, PLAIN, 0.0, Effect(0.0, 1.0),
+            ExcludeRuns(f"{text} (wrong sign, exchanged speeds, or a wrong zero of slip)", names),
         )  # fmt: skip
 
 
@@ -138,7 +146,8 @@ def _far_from_priors(posterior: SlipPosterior, fit: Linearised) -> Iterator[Find
         cause = FAR_FROM.get(parameter.name)
         if cause is None:
             continue
-        p = min(1.0, 2 * len(FAR_FROM) * float(ndtr(-abs(z))))
+        beyond = abs(z) - BROAD * (parameter in posterior.law.parameters)
+        p = min(1.0, 2 * len(FAR_FROM) * float(ndtr(-beyond)))
         question = Question.SLIP if cause in (Cause.SLIP_ZERO, Cause.FORCE_ZERO) else Question.UNITS
         text = f"{parameter.name} is {values[parameter.name]:.3g}, {z:+.1f} sd of its prior"
         yield Finding(

@@ -93,7 +93,7 @@ def test_a_planted_term_explains_most_with_its_size_and_its_cause(text):
 @pytest.mark.parametrize("change", [unchanged, swept()], ids=["held", "swept"])
 def test_nothing_is_found_where_nothing_was_planted(change):
     found = findings(change)
-    assert len(found) >= 12
+    assert len(found) >= 11
     assert min(each.p for each in found) > 0.05
 
 

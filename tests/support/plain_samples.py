@@ -4,7 +4,9 @@
 import numpy as np
 
 from model.bayes.averaging.blocks import block_means
-from model.bayes.plain.fit import plain_fit
+from model.bayes.plain.fit import PlainFit, plain_fit
+from model.bayes.plain.rows import PlainRows
+from model.bayes.plain.search import Search
 from model.bayes.posterior import LoadCell, default_priors
 from model.slip import MagicFormula, SlipDefinition
 from model.slip.samples import SlipSamples
@@ -41,3 +43,14 @@ def fitted_plainly(samples, *, seed=1):
     return plain_fit(
         samples, LAW, priors=priors, zero_sd=0.01, rng=np.random.default_rng(seed)
     )  # fmt: skip
+
+
+def fit_blocks(blocks, law, *, priors, zero_sd, rng):
+    """Fit a slip law plainly to block means, as `plain_fit` does to samples."""
+    rows = PlainRows(
+        blocks.slip, blocks.normal_force, blocks.traction_force, blocks.run, blocks.definition
+    )
+    problem = Search(law, [priors[p.name] for p in law.parameters], zero_sd, rows)
+    problem, x = problem.refined(problem.best_of_starts(rng))
+    zero = float(x[-1] * zero_sd)
+    return PlainFit(law, problem.values(x), zero, problem.offset(x), problem.rows, problem, x, 0)

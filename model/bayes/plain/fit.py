@@ -195,41 +195,9 @@ def plain_fit(
     scale = problem.slip_scale(x)
     rows = rows_of(samples, scale)
     rows = replace(rows, offset_a_run=cross_the_rise(rows, scale))
-    return _finished(replace(problem, rows=rows), x, rng)
-
-
-def fit_blocks(
-    blocks: SlipBlocks,
-    law: SlipLaw,
-    *,
-    priors: Mapping[str, Prior],
-    zero_sd: float,
-    rng: np.random.Generator,
-) -> PlainFit:
-    """Fit a slip law by robust least squares to block means.
-
-    Args:
-        blocks: The block means.
-        law: The slip law.
-        priors: Priors of the law's parameters by name, in whose coordinates is searched.
-        zero_sd: Standard deviation of the relative error of the ratio of radii [-].
-        rng: Source of randomness of starts.
-
-    Raises:
-        FitError: No prior draw is valid at the measured loads, or a residual overflowed.
-    """
-    rows = PlainRows(
-        blocks.slip, blocks.normal_force, blocks.traction_force, blocks.run, blocks.definition
-    )
-    problem = Search(law, [priors[p.name] for p in law.parameters], zero_sd, rows)
-    return _finished(problem, problem.best_of_starts(rng), rng)
-
-
-def _finished(problem: Search, x: Array, rng: np.random.Generator) -> PlainFit:
-    """Refine a fit from coordinates x, shape (k + 2,)."""
-    problem, x = problem.refined(x)
+    problem, x = replace(problem, rows=rows).refined(x)
     zero = float(x[-1] * problem.zero_sd)
     return PlainFit(
-        problem.law, problem.values(x), zero, problem.offset(x), problem.rows, problem, x,
+        law, problem.values(x), zero, problem.offset(x), problem.rows, problem, x,
         int(rng.integers(1 << 32)),
     )  # fmt: skip

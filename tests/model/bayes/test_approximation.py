@@ -11,11 +11,11 @@ from model.bayes.averaging.blocks import block_means
 from model.bayes.drawing.laplace import LaplaceMixture
 from model.bayes.drawing.tails import approximate
 from model.bayes.drawing.weighted import importance_draws
-from model.bayes.plain.fit import fit_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip import MagicFormula
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
+from support.plain_samples import fit_blocks
 from support.simulated_sweep import simulate_sweep
 
 LAW, TRUTH = MagicFormula("constant"), (20.4, 1.56, 0.38, 0.0)

@@ -5,9 +5,7 @@ import numpy as np
 import pytest
 
 from model.bayes.averaging.blocks import block_means
-from model.bayes.plain.fit import fit_blocks
-from model.bayes.posterior import LoadCell, default_priors
-from support.plain_samples import LAW, TRUTH, fitted_plainly, set_points, sweeps
+from support.plain_samples import TRUTH, fitted_plainly, set_points, sweeps
 
 
 @pytest.mark.parametrize("make", [set_points, sweeps])
@@ -25,13 +23,6 @@ def test_resampled_fits_scatter_as_fits_of_other_data_do():
         fitted_plainly(set_points(noise=0.0, a_run=0.05, seed=seed)).values for seed in range(12)
     ]
     assert np.std(draws[:, 0]) == pytest.approx(np.std(others, axis=0)[0], rel=0.7)
-
-
-def test_block_means_are_fitted_without_samples():
-    blocks = block_means(set_points(), 10)
-    priors = default_priors(LAW, blocks, LoadCell())
-    found = fit_blocks(blocks, LAW, priors=priors, zero_sd=0.01, rng=np.random.default_rng(0))
-    assert found.values[[0, 2]] == pytest.approx(TRUTH[[0, 2]], rel=0.03)
 
 
 def test_averages_that_bend_the_curve_move_the_fit_and_short_ones_do_not():

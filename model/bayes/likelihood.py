@@ -22,10 +22,10 @@ forces where the curve is steep would determine its slope, and bias it. Zeros, s
 noise are integrated out exactly by a Kalman filter of each run.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from scipy.linalg import solve_triangular, toeplitz
+from scipy.linalg import cho_solve, solve_triangular, toeplitz
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
@@ -240,3 +240,89 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
         Log likelihood of each parameter vector, shape (w,).
     """
     return run_log_likelihood(blocks, law, values).sum(axis=1)
+
+
+def corrected_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array, *, zeros: bool) -> SlipBlocks:
+    r"""Correct block means for load cell, radii, rolling resistance and the zeros of their run.
+
+    The likelihood's model of the data (`model.bayes.likelihood`), solved for the law:
+
+    .. math::
+        \kappa' = \kappa - \varepsilon\,\partial\kappa, \qquad
+        N' = (1+g_n) F_n - b_n + c\,\hat F + \hat z_i, \qquad
+        F' = f(\kappa', N') + \frac{F - \hat F - \hat b_i - f_n \hat z_i}{1+g_t},
+
+    with the predicted traction :math:`\hat F` and its slope in load :math:`f_n`. Where slip and
+    load are constant within blocks that is :math:`(F - \hat b_i)/(1+g_t) + c_r N'`; where they are
+    not, F' is the traction that slip and load of the mean would have given. Noise stays as it is,
+    over :math:`1+g_t`.
+
+    A run at one slip cannot tell its zeros from a misfit of the law there: corrected for them, such
+    runs lie on any curve.
+
+    Args:
+        blocks: The block means, n of them.
+        law: The slip law, of k parameters.
+        values: Law and measurement parameters, such as the posterior mean, shape (k + 11,).
+        zeros: Whether to correct for the run's own zeros; they count as 0 else.
+
+    Returns:
+        The blocks with corrected slip, load and traction; all else as it was.
+
+    Raises:
+        LinAlgError: The covariance of a run's blocks is singular.
+    """
+    k = len(law.parameters)
+    g_t, g_n, b_n, c, epsilon = values[k : k + 5]
+    predicted = predict_blocks(blocks, law, values[None]).of_vector(0)
+    of_runs = run_zeros(blocks, predicted, values) if zeros else np.zeros((2, blocks.n_runs))
+    force_zero, load_zero = of_runs[:, blocks.run]
+    slip = blocks.slip - epsilon * slip_per_radius_error(blocks.slip, blocks.definition)
+    load = (1 + g_n) * blocks.normal_force - b_n + c * predicted.force + load_zero
+    load = np.maximum(load, 1e-9)  # as the likelihood has it
+    zero = force_zero + predicted.load_slope * load_zero
+    force = law.force(slip, load, values[:k])
+    force = force + (blocks.traction_force - predicted.force - zero) / (1 + g_t)
+    return replace(blocks, slip=slip, normal_force=load, traction_force=force)
+
+
+def at_load(blocks: SlipBlocks, law: SlipLaw, values: Array, load: float) -> Array:
+    """Compute the traction that corrected blocks would have at another load, shape (n,) [N].
+
+    Args:
+        blocks: Corrected block means, n of them.
+        law: The slip law, of k parameters, by which traction changes with load.
+        values: Its parameters, shape (k,).
+        load: The load [N].
+    """
+    own = law.force(blocks.slip, blocks.normal_force, values)
+    return blocks.traction_force + law.force(blocks.slip, load, values) - own
+
+
+def run_zeros(blocks: SlipBlocks, predicted: PredictedForces, values: Array) -> Array:
+    r"""Compute the expected zeros of traction and load of each run, given its measured traction.
+
+    .. math::
+        \hat b = \tau^2\, 1^T \Sigma^{-1} (F - \hat F), \qquad
+        \hat z = \tau^2 f_n^T \Sigma^{-1} (F - \hat F)
+
+    with the covariance :math:`\Sigma` of the run's blocks, as `covariance_factors` has it.
+
+    Args:
+        blocks: The block means, n of them.
+        predicted: Predictions by one parameter vector, arrays of shape (n,).
+        values: Law and measurement parameters, shape (k + 11,).
+
+    Returns:
+        Zeros of traction, then of load, shape (2, n_runs) [N].
+
+    Raises:
+        LinAlgError: The covariance of a run's blocks is singular.
+    """
+    edges = blocks.run_starts()[1:-1]
+    residual = np.split(blocks.traction_force - predicted.force, edges)
+    factors = covariance_factors(blocks, predicted, values)
+    weighted = [cho_solve((L, True), rest) for L, rest in zip(factors, residual, strict=True)]
+    slopes = np.split(predicted.load_slope, edges)
+    load = [h @ each for h, each in zip(slopes, weighted, strict=True)]
+    return values[-1] ** 2 * np.array([[each.sum() for each in weighted], load])

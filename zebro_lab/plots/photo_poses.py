@@ -3,7 +3,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +10,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.poses import Poses
 from model.robot import Robot
 from zebro_lab.plots import sheet
 from zebro_lab.plots.walk_robot import leg_arcs, outline, to_world
@@ -103,46 +101,3 @@ def _draw_robot(axes: Axes, shot: Shot, robot: Robot) -> None:
     axes.plot(*seen[:, :2].T, color="black", ls="--", lw=1.0, label="tracked body")
     axes.grid(color="0.9", lw=0.6)
     axes.set_axisbelow(True)
-
-
-@sheet.styled
-def band_over_floor(
-    floor: NDArray[np.uint8],
-    *,
-    extent: tuple[float, float, float, float],
-    path: Poses,
-    band: Poses | None,
-    track: Poses,
-    title: str,
-    photo_at: float,
-    simulated_photos: bool,
-) -> Figure:
-    """Draw the predicted path with 60 of its draws, and the track, over a photograph from above.
-
-    Args:
-        floor: The floor from straight above, BGR, shape (height, width, 3).
-        extent: Lowest x, highest x, lowest y, highest y of the picture on the floor [m].
-        path: The predicted path, in the floor frame.
-        band: Draws of the predicted path; None without draws.
-        track: The tracked poses.
-        title: Name of the walk.
-        photo_at: Time of the photograph, in the prediction's time base [s].
-        simulated_photos: Whether the photograph is simulated too; predictions always are.
-
-    Returns:
-        The figure, x to the right and y up, both to one scale.
-    """
-    kind = "simulated prediction and photograph" if simulated_photos else "simulated prediction"
-    axes = sheet.photograph_axes(
-        f"Predicted and tracked path: {title} ({kind})", floor, extent, simulated=False,
-        note=f"photograph at {photo_at:.1f} s; raised objects are displaced",
-    )  # fmt: skip
-    sheet.draw_band(axes, band, label="draws", lw=0.5, alpha=0.25)
-    axes.plot(*path.position.T, color=sheet.BLUE, lw=1.6, label="predicted path")
-    axes.plot(
-        *track.position.T, ls="none", marker="o", ms=4.5, color="black", mec="white", mew=0.6,
-        label="track",
-    )  # fmt: skip
-    figure = cast("Figure", axes.figure)
-    sheet.legend_below(figure, columns=3)
-    return figure

@@ -213,7 +213,7 @@ def photograph_axes(
     *,
     simulated: bool,
     note: str,
-) -> Axes:
+) -> tuple[Figure, Axes]:
     """Create a figure with a photograph from straight above, pale, x to the right and y up.
 
     Args:
@@ -224,7 +224,7 @@ def photograph_axes(
         note: Note above the photograph.
 
     Returns:
-        The axes, both to one scale.
+        The figure, and its axes, both to one scale.
     """
     width, height = extent[1] - extent[0], extent[3] - extent[2]
     scale = min(9.0 / width, 8.0 / height)
@@ -236,7 +236,7 @@ def photograph_axes(
     axes.imshow(photograph[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.6)
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
     axes.set_title(note, loc="left")
-    return axes
+    return figure, axes
 
 
 def tint(share: float) -> str:

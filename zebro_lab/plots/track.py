@@ -3,7 +3,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -168,7 +167,7 @@ def over_floor(
     Returns:
         The figure, x to the right and y up, both to one scale.
     """
-    axes = sheet.photograph_axes(title, floor, extent, simulated=simulated, note=note)
+    figure, axes = sheet.photograph_axes(title, floor, extent, simulated=simulated, note=note)
     axes.plot(*poses[:, :2].T, color=sheet.RED, lw=1.3, marker="o", ms=2.5, label=_ORIGIN)
     for ellipse in ellipses:
         axes.plot(*ellipse.T, color=sheet.BLUE, lw=0.9, zorder=5, label="90 % region of the origin")
@@ -177,7 +176,6 @@ def over_floor(
             reach * np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2]))))  # fmt: skip
     if np.any(np.all(floor == 0, axis=2)):
         axes.fill_between([], [], color=_UNSEEN, lw=0, label="outside the photograph")
-    figure = cast("Figure", axes.figure)
     sheet.legend_below(figure, columns=4)
     labelled = [k for k, label in enumerate(labels) if label]
     for k in labelled[:: -(-len(labelled) // _MOST_LABELS) or 1]:

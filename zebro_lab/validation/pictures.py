@@ -11,9 +11,9 @@ from model.arrays import Array
 from tracking.errors import TrackingError
 from zebro_lab.files.picture_format import PictureFormat
 from zebro_lab.files.source_names import is_simulated
-from zebro_lab.plots import save
+from zebro_lab.plots import save, sheet
 from zebro_lab.plots.path_validation import path_validation, tilt
-from zebro_lab.plots.photo_poses import Shot, band_over_floor, photos_beside_poses
+from zebro_lab.plots.photo_poses import Shot, photos_beside_poses
 from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.predicted_walks import ShownRun
@@ -134,6 +134,7 @@ def _shot(run: JudgedRun, walk: WalkedPath, view: PlacedPhoto, t: float) -> Shot
     )
 
 
+@sheet.styled
 def _draw_floor(
     file: Path, run: JudgedRun, view: PlacedPhoto, t: float, *, simulated_photos: bool
 ) -> None:
@@ -142,16 +143,19 @@ def _draw_floor(
     places = np.vstack([path.position, run.track.position])
     low, high = places.min(axis=0) - _MARGIN, places.max(axis=0) + _MARGIN
     scale = min(400.0, float(np.sqrt(_MOST_FLOOR_PIXELS / np.prod(high - low))))
-    figure = band_over_floor(
-        view.from_above(low, high, pixels_per_metre=scale),
-        extent=_extent(low, high),
-        path=path,
-        band=run.band,
-        track=run.track,
-        title=run.name,
-        photo_at=t,
-        simulated_photos=simulated_photos,
-    )
+    figure, axes = sheet.photograph_axes(
+        f"Predicted and tracked path: {run.name} (simulated prediction"
+        f"{' and photograph' * simulated_photos})",
+        view.from_above(low, high, pixels_per_metre=scale), _extent(low, high), simulated=False,
+        note=f"photograph at {t:.1f} s; raised objects are displaced",
+    )  # fmt: skip
+    sheet.draw_band(axes, run.band, label="draws", lw=0.5, alpha=0.25)
+    axes.plot(*path.position.T, color=sheet.BLUE, lw=1.6, label="predicted path")
+    axes.plot(
+        *run.track.position.T, ls="none", marker="o", ms=4.5, color="black", mec="white", mew=0.6,
+        label="track",
+    )  # fmt: skip
+    sheet.legend_below(figure, columns=3)
     save(figure, file)
 
 

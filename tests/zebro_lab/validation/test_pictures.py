@@ -10,6 +10,7 @@ import pytest
 from model.judgement import Prediction, judge_tilt
 from model.poses import Poses
 from model.robot import Robot
+from support.drawn_figures import figures_saved
 from support.photo_tracks import write_photo_track
 from zebro_lab.runs.recorded_walk import Tilt
 from zebro_lab.track.file import TrackFile
@@ -51,14 +52,21 @@ def retimed(track, times):
 
 
 def test_a_validation_shows_photographs_beside_poses_and_the_band_over_the_floor(
-    track, walked, tmp_path
+    track, walked, tmp_path, monkeypatch
 ):
+    drawn = figures_saved(monkeypatch)
     retimed(track, [1.0, 3.0])
     measured = Tilt(walked.t, walked.orientation[:, :2] + 0.01, (), "real")
-    undrawn = draw_validation(tmp_path, judged(track, walked, measured=measured), simulated=True)
-    assert undrawn == ()
-    drawn = {file.name for file in tmp_path.glob("*.png")}
-    assert drawn == {"walk.png", "walk.photos.png", "walk.floor.png", "walk.imu.png"}
+    shown = judged(track, walked, measured=measured)
+    assert draw_validation(tmp_path, shown, simulated=True) == ()
+    assert set(drawn) == {"walk.png", "walk.photos.png", "walk.floor.png", "walk.imu.png"}
+    floor = drawn["walk.floor.png"]
+    assert "simulated" in floor.get_suptitle()
+    (axes,) = floor.axes
+    assert axes.get_aspect() == 1.0
+    predicted, seen = axes.lines
+    np.testing.assert_array_equal(predicted.get_xydata(), walked.poses.position)
+    np.testing.assert_array_equal(seen.get_xydata(), shown.run.track.position)
 
 
 def test_a_photograph_without_the_floor_s_marks_is_said_and_the_rest_drawn(track, walked, tmp_path):

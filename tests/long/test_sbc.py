@@ -26,13 +26,13 @@ from model.bayes.averaging.blocks import block_means
 from model.bayes.drawing.tails import approximate
 from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import not_identified
-from model.bayes.plain.fit import fit_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.errors import FitError
 from model.slip.rig_errors import USUAL
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan
+from support.plain_samples import fit_blocks
 from support.simulated_blocks import simulate_blocks
 from support.simulated_sweep import simulate_sweep
 

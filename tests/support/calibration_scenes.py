@@ -1,24 +1,21 @@
 # SPDX-License-Identifier: MIT
 """Simulated calibrations with posterior draws whose truth is known, and their figures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from model.arrays import Array
 from model.slip import MagicFormula, SlipDefinition
-from zebro_lab.plots import (
-    corner,
-    parameter_labels,
-    residuals,
-    slip_curves,
-    slip_surface,
-    traces,
-)
+from zebro_lab.plots.noise import residuals
+from zebro_lab.plots.posterior import corner, traces
+from zebro_lab.plots.sheet import Page, parameter_labels
+from zebro_lab.plots.slip import slip_curves
+from zebro_lab.plots.slip_law import slip_surface
 
+SCREEN = Page(simulated=True)
 RIG_LOADS = np.array([2.13, 6.63, 8.13, 12.75])
 
 
@@ -47,13 +44,13 @@ class Scene:
     draws: Array
     load_levels: Array
 
-    def picture(self, name: str, *, simulated: bool = True) -> Figure:
+    def picture(self, name: str, page: Page = SCREEN) -> Figure:
         rng = np.random.default_rng(1)
         labels = parameter_labels(self.law.parameters)
-        marks = {"simulated": simulated}
+        marks = {"page": page}
         match name:
             case "curves":
-                return self.curves(simulated=simulated)
+                return self.curves(page)
             case "surface":
                 return slip_surface(self.blocks, self.law, values=self.truth, **marks)
             case "corner":
@@ -65,10 +62,21 @@ class Scene:
         )
         return residuals(self.blocks, whitened=whitened, run_score=run_score, **marks)
 
-    def curves(self, *, simulated: bool = True) -> Figure:
+    @property
+    def corrected(self) -> Blocks:
+        return replace(
+            self.blocks, slip=self.blocks.slip - 0.001,
+            traction_force=self.blocks.traction_force + 0.02 * self.blocks.normal_force,
+        )  # fmt: skip
+
+    def curves(self, page: Page = SCREEN, *, of_runs: bool = False) -> Figure:
+        slip = self.law.peak_slip(self.load_levels, self.truth)
+        force = self.law.force(slip, self.load_levels, self.truth)
+        driving = np.stack(np.broadcast_arrays(slip, force), axis=1)
         return slip_curves(
-            self.blocks, self.law, draws=self.draws, load_levels=self.load_levels,
-            simulated=simulated,
+            self.blocks, self.corrected, self.law, draws=self.draws, plain=0.9 * self.truth,
+            loads=self.load_levels, peaks=np.stack([driving, -driving], axis=1),
+            of_runs=of_runs, page=page,
         )  # fmt: skip
 
 
@@ -93,8 +101,3 @@ def scene(
 def labelled_lines(figure: Figure, label: str) -> list:
     """Return the lines of a figure with a label."""
     return [line for axes in figure.axes for line in axes.lines if line.get_label() == label]
-
-
-def scatters(axes) -> list[PathCollection]:
-    """Return the clouds of points of a panel."""
-    return [each for each in axes.collections if isinstance(each, PathCollection)]

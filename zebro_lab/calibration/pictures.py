@@ -1,68 +1,73 @@
 # SPDX-License-Identifier: MIT
 """Draw the pictures of a calibration folder."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
 
+import numpy as np
+
+from model.arrays import Array
 from model.bayes.calibration import Calibration
+from model.bayes.estimate import Estimate
 from model.bayes.law_scores import LawScores
-from model.bayes.likelihood import predict_blocks
-from model.bayes.verdict import State
-from zebro_lab import plots
-from zebro_lab.files.picture_format import PictureFormat
+from model.bayes.likelihood import corrected_blocks
+from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.source_names import is_simulated
-
-_MARKS: Final = {
-    State.AS_TESTED: "NOT FULLY TESTED",
-    State.NOT_TRUSTWORTHY: "NOT TRUSTWORTHY",
-}
-"""What titles say of a fit that is not trustworthy."""
+from zebro_lab.plots import laws, noise, posterior, sheet, slip, slip_law
 
 
-def draw_calibration(folder: Path, calibration: Calibration, form: PictureFormat = "png") -> None:
+def draw_calibration(folder: Path, calibration: Calibration, request: CalibrationRequest) -> None:
     """Draw `curves`, `surface`, `corner`, `traces` and `residuals` of a finished fit.
 
-    Where laws were compared by their scores, `laws` draws all of them. The titles of a fit that did
-    not converge, is not trustworthy or not fully tested say so.
+    Where laws were compared by their scores, `laws` draws all of them. Small print says how far the
+    fit can be trusted, and without titles that data are simulated.
 
     Args:
         folder: Existing folder to write the pictures into.
         calibration: The finished fit.
-        form: Format of the pictures.
+        request: Format and width of the pictures, and whether they have titles.
     """
-    law = calibration.posterior.law
-    blocks = calibration.posterior.blocks
-    residuals, simulated = calibration.residuals, is_simulated(calibration.source)
-    k = len(law.parameters)
+    law, blocks = calibration.posterior.law, calibration.posterior.blocks
+    residuals, plain = calibration.residuals, calibration.fit.plain
+    page = sheet.Page(is_simulated(calibration.source), request.width)
+    k, centre = len(law.parameters), calibration.draws.flat.mean(axis=0)
     draws = calibration.draws.flat[:, :k]
-    labels = plots.parameter_labels(law.parameters)
+    # Runs at one slip would lie on any curve, less zeros of their own.
+    corrected = corrected_blocks(blocks, law, centre, zeros=not plain.of_run_means)
+    labels = sheet.parameter_labels(law.parameters)
     figures = {
-        "curves": plots.slip_curves(
-            blocks, law, draws=draws, load_levels=calibration.levels, simulated=simulated
+        "curves": slip.slip_curves(
+            blocks, corrected, law, draws=draws, plain=plain.values,
+            loads=calibration.levels, peaks=[*map(_peaks, calibration.curves)],
+            of_runs=plain.of_run_means, page=page,
         ),
-        "surface": plots.slip_surface(blocks, law, values=draws.mean(axis=0), simulated=simulated),
-        "corner": plots.corner(draws, labels=labels, simulated=simulated),
-        "traces": plots.traces(
-            calibration.draws.values[..., :k], labels=labels, simulated=simulated
+        "surface": slip_law.slip_surface(corrected, law, values=centre[:k], page=page),
+        "corner": posterior.corner(draws, labels=labels, page=page),
+        "traces": posterior.traces(calibration.draws.values[..., :k], labels=labels, page=page),
+        "residuals": noise.residuals(
+            blocks, whitened=residuals.whitened, run_score=residuals.run_score, page=page
         ),
-        "residuals": plots.residuals(
-            blocks, whitened=residuals.whitened, run_score=residuals.run_score, simulated=simulated
-        ),
-    }
+    }  # fmt: skip
     scores = calibration.comparison
     if isinstance(scores, LawScores):
-        centre = calibration.draws.flat.mean(axis=0)
-        residual = blocks.traction_force - predict_blocks(blocks, law, centre[None]).force[0]
-        figures["laws"] = plots.slip_laws(
-            blocks,
+        figures["laws"] = laws.slip_laws(
+            corrected,
             {score.name: (score.law, score.values) for score in scores.laws},
             reference=scores.laws[scores.chosen].name,
-            residual=residual,
             load_levels=calibration.levels,
-            simulated=simulated,
+            page=page,
         )
+    hidden = page.simulated and request.no_title
+    note = f"{'SIMULATED data; ' * hidden}verdict: {calibration.verdict.state}"
+    dpi = None if page.width is None else 300.0  # what journals ask of PNG
     for name, figure in figures.items():
-        mark = _MARKS.get(calibration.verdict.state)
-        if mark is not None:
-            plots.add_to_title(figure, mark)
-        plots.save(figure, folder / f"{name}.{form}")
+        sheet.finish(figure, note, titled=not request.no_title)
+        sheet.save(figure, folder / f"{name}.{request.form}", dpi=dpi)
+
+
+def _peaks(curve: Sequence[Estimate]) -> Array:
+    """Return slip [-] and traction [N] of driving, then of braking peak at one load, (2, 2)."""
+    known = {each.parameter.name: each.median for each in curve}
+    slip, force = known["peak_slip"], known["largest_force"]
+    braking = known.get("braking_peak_slip", -slip), known.get("largest_braking_force", force)
+    return np.array([[slip, force], [braking[0], -braking[1]]])

@@ -9,7 +9,7 @@ from typer import Argument, Option
 
 from model.slip_laws import SLIP_LAWS
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.terminal.picture_options import FormatOption
+from zebro_lab.terminal.picture_options import FormatOption, WidthOption
 from zebro_lab.terminal.request_command import Range
 from zebro_lab.workers import WorkersRequest
 
@@ -99,6 +99,8 @@ class CalibrationRequest:
     workers: WorkersRequest = field(default_factory=WorkersRequest)
     resume: Annotated[bool, Option("--resume", help="Resume the stopped fit in --out.")] = False
     form: FormatOption = "png"
+    width: WidthOption = None
+    no_title: Annotated[bool, Option("--no-title", help="Draw pictures without titles.")] = False
 
     def __post_init__(self) -> None:
         """Raise `SettingsError` for options that contradict each other, or an unreadable prior."""
@@ -167,7 +169,7 @@ class CalibrationRequest:
         """Return the options that a resumed fit must share with the stopped one, JSON-serialisable.
 
         Left out are data and column map, whose content is hashed, and `out`, `max_steps`,
-        `workers`, `resume` and `form`.
+        `workers`, `resume`, `form`, `width` and `no_title`.
         """
         return {
             "slip_definition": self.slip_definition,

@@ -194,4 +194,4 @@ def _write(
             folder, calibration, inputs=inputs, priors=priors,
             lateral=None if lateral is None else lateral.content(),
         )  # fmt: skip
-        draw_calibration(folder, calibration, request.form)
+        draw_calibration(folder, calibration, request)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
+from model.bayes.likelihood import at_load
 from model.slip.law import SlipLaw
 from zebro_lab.plots import sheet
 
@@ -25,9 +26,8 @@ def slip_laws(
     laws: Mapping[str, tuple[SlipLaw, Array]],
     *,
     reference: str,
-    residual: Array,
     load_levels: ArrayLike,
-    simulated: bool,
+    page: sheet.Page,
 ) -> Figure:
     """Draw the data and the curve of every law at each tested load, and how they differ.
 
@@ -37,51 +37,52 @@ def slip_laws(
     curves are seen.
 
     Args:
-        blocks: Block means of slip ratio and forces.
+        blocks: Block means of slip ratio and forces, corrected for what the fit estimated.
         laws: Each law, of k parameters, with posterior draws of them, shape (n_draws, k), by name.
         reference: Name of the law with which all laws are compared.
-        residual: Measured traction less what the reference's fit expects of each block, with the
-            errors of cell and rig, shape (n_blocks,) [N].
         load_levels: Nominal loads, shape (n_levels,) [N].
-        simulated: Whether to append "(simulated)" to the title.
+        page: Whether data are simulated, and width of the figure.
 
     Returns:
         The figure.
     """
     levels = np.sort(np.ravel(np.asarray(load_levels, dtype=float)))
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
-    figure = sheet.new_figure(
-        "Slip laws compared", simulated, width=9.0, height=1.6 + 2.3 * len(levels)
-    )
+    fitted, values = laws[reference][0], laws[reference][1].mean(axis=0)
+    width, narrow = page.width or 9.0, page.narrow
+    height = 1.6 + 1.4 * narrow + max(0.25 * width, 1.2) * len(levels)
+    figure = sheet.new_figure("Slip laws compared", page.simulated, width=width, height=height)
     panels = figure.subplots(len(levels), 2, squeeze=False)
     for row, (load, (whole, beside)) in enumerate(zip(levels, panels, strict=True)):
         mine = nearest == row
         slip = sheet.slip_grid(blocks.slip[mine] if mine.any() else blocks.slip, 250)
+        force = at_load(blocks, fitted, values, load)
         whole.scatter(
-            blocks.slip[mine], blocks.traction_force[mine], s=9, color="0.35", linewidths=0,
-            alpha=sheet.point_alpha(int(mine.sum())), label="block means",
+            blocks.slip[mine], force[mine], s=9, color="0.35", linewidths=0,
+            alpha=sheet.point_alpha(int(mine.sum())), label="block means, corrected",
         )  # fmt: skip
+        residual = force - fitted.force(blocks.slip, load, values)
         _draw_means(beside, blocks.slip[mine], residual[mine])
         base = _median(laws[reference], slip, load)
         for index, (name, law) in enumerate(laws.items()):
             force = _median(law, slip, load)
-            fitted = name == reference
+            is_fitted = name == reference
             style = {
                 "color": sheet.CYCLE[index % len(sheet.CYCLE)],
-                "ls": "-" if fitted else _STYLES[index % len(_STYLES)],
-                "lw": 2.0 if fitted else 1.2,
+                "ls": "-" if is_fitted else _STYLES[index % len(_STYLES)],
+                "lw": 2.0 if is_fitted else 1.2,
             }
-            whole.plot(slip, force, label=f"{name} (fitted)" if fitted else name, **style)
+            whole.plot(slip, force, label=f"{name} (fitted)" if is_fitted else name, **style)
             beside.plot(slip, force - base, **style)
         whole.set_title(f"load {load:.4g} N", loc="left")
-        beside.set_title(f"less '{reference}'", loc="left")
-        whole.set_ylabel(sheet.TRACTION_LABEL)
+        beside.set_title("less the fitted law", loc="left")
+        whole.set_ylabel("traction [N]")
         beside.set_ylabel("difference [N]")
-    for axes in panels[-1]:
-        axes.set_xlabel(sheet.slip_label(blocks.definition))
+    for axes in panels[-1, : 2 - narrow]:
+        axes.set_xlabel(sheet.slip_label(blocks.definition, width / 2))
     for axes in panels.flat:
         axes.set_xscale("function", functions=(_root, _square))
-        axes.xaxis.set_major_locator(FixedLocator(_TICKS))
+        axes.xaxis.set_major_locator(FixedLocator(_TICKS[:: 1 + narrow]))
         axes.axhline(0, color="0.6", lw=0.5, zorder=0)
     sheet.legend_below(figure, columns=2)
     return figure

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.residuals import lag_correlation
-from zebro_lab.plots.sheet import BLUE, new_figure, slip_label, styled
+from zebro_lab.plots.sheet import BLUE, Page, new_figure, slip_label, styled
 
 _MAX_LAG = 20
 _FEWEST_PAIRS = 8  # of a lag that is drawn: with fewer the band of chance is most of -1 to 1
@@ -21,7 +21,7 @@ _NORMAL_90, _NORMAL_95 = 1.6449, 1.96  # half-widths of a standard normal's cent
 
 
 @styled
-def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, simulated: bool) -> Figure:
+def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, page: Page) -> Figure:
     """Draw the residuals of a fit, as four checks of the noise model.
 
     Args:
@@ -30,20 +30,24 @@ def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, simulate
             independent standard normal if the noise model holds.
         run_score: Deviation of each run's mean over the standard deviation of the posterior
             predictive, shape (n_runs,) [-].
-        simulated: Whether to append "(simulated)" to the title.
+        page: Whether data are simulated, and width of the figure.
 
     Returns:
         The figure: residuals over slip, their distribution, their autocorrelation within runs,
         and the sorted run scores with the central 90 %.
     """
-    figure = new_figure("Residuals", simulated, width=7.5, height=6.2)
-    over_slip, distribution, lags, runs = figure.subplots(2, 2).ravel()
+    width, rows = page.width or 7.5, 4 if page.narrow else 2
+    figure = new_figure(
+        "Residuals", page.simulated, width=width, height=0.4 + rows * (1.2 + 0.2 * width)
+    )
+    over_slip, distribution, lags, runs = figure.subplots(rows, 4 // rows).ravel()
     points = over_slip.scatter(
         blocks.slip, whitened, c=blocks.normal_force, cmap="viridis", s=8, linewidths=0, alpha=0.8
     )
     over_slip.axhline(0, color="black", lw=0.6)
     over_slip.set(xlabel=slip_label(blocks.definition), ylabel="whitened residual [-]")
-    figure.colorbar(points, ax=over_slip, label="normal force [N]")
+    if np.ptp(blocks.normal_force) > 0:
+        figure.colorbar(points, ax=over_slip, label="normal force [N]")
     _draw_distribution(distribution, whitened)
     _draw_autocorrelation(lags, whitened, blocks.run)
     _draw_run_scores(runs, run_score)

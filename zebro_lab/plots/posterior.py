@@ -12,27 +12,32 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import gaussian_filter
 
 from model.arrays import Array
-from zebro_lab.plots.sheet import BLUE, CYCLE, legend_below, new_figure, styled, with_minus
+from zebro_lab.plots.sheet import BLUE, CYCLE, Page, legend_below, new_figure, styled, with_minus
 
+_PANEL = 0.8  # inches of a parameter in print, at least
 _REGIONS = ("#CCE3F0", "#66AAD1")  # blue, mixed with white: 90 % and 50 % of the draws
 
 
 @styled
-def corner(draws: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
+def corner(draws: Array, *, labels: Sequence[str], page: Page) -> Figure:
     """Draw the density of every parameter and the joint region of every pair, from draws.
 
     Args:
         draws: Posterior draws, shape (n_draws, k).
         labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
-        simulated: Whether to append "(simulated)" to the title.
+        page: Whether data are simulated, and width of the figure.
 
     Returns:
         The figure: densities on the diagonal, titled with median and central 90 %; below it the
         regions of highest density that hold 50 % and 90 % of the draws, over a thinned sample.
+        Panels narrower than 1.2 inches have symbols alone, and no numbers above.
     """
     k = draws.shape[1]
-    side = max(7.0, 1.75 * k)
-    figure = new_figure("Posterior of the slip law", simulated, width=side, height=side)
+    side = max(page.width or 7.0, (_PANEL if page.width else 1.75) * k)
+    ticks = 3 if side > 1.2 * k else 2
+    if ticks == 2:
+        labels = [each.split("\n")[-1].replace(" [", "\n[") for each in labels]
+    figure = new_figure("Posterior of the slip law", page.simulated, width=side, height=side + 0.5)
     panels = figure.subplots(k, k, squeeze=False, sharex="col")
     edges = [_edges(values) for values in draws.T]
     for row in range(k):
@@ -42,31 +47,33 @@ def corner(draws: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
                 axes.remove()
                 continue
             if column == row:
-                _draw_marginal(axes, draws[:, row], edges[row])
+                title = _draw_marginal(axes, draws[:, row], edges[row])
+                axes.set_title(title if ticks > 2 else "")
             else:
                 _draw_pair(axes, draws[:, [column, row]], (edges[column], edges[row]))
-            _label_corner(axes, labels, row, column)
+            _label_corner(axes, labels, row, column, ticks)
     figure.align_labels()
     legend_below(figure, columns=3)
     return figure
 
 
 @styled
-def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
+def traces(chains: Array, *, labels: Sequence[str], page: Page) -> Figure:
     """Draw the draws of every parameter in order, one colour for each independent ensemble.
 
     Args:
         chains: Draws, shape (n_ensembles, n_draws, k).
         labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
-        simulated: Whether to append "(simulated)" to the title.
+        page: Whether data are simulated, and width of the figure.
 
     Returns:
         The figure: a row for each parameter, densities left, traces right. Ensembles that agree
         lie on one another. Traces of 4,000 draws or more are thinned to 2,000 to 3,000 points.
     """
     n_ensembles, n_draws, k = chains.shape
-    figure = new_figure("Traces by ensemble", simulated, width=7.5, height=1.2 + 1.35 * k)
-    panels = figure.subplots(k, 2, squeeze=False, width_ratios=(1, 2.4))
+    width, height, narrow = page.width or 7.5, 1.2 + 1.35 * k, page.narrow
+    figure = new_figure("Traces by ensemble", page.simulated, width=width, height=height)
+    panels = figure.subplots(k, 2, squeeze=False, width_ratios=(1, 1.4 if narrow else 2.4))
     kept = np.arange(0, n_draws, max(1, n_draws // 2000))
     for row, (density, trace) in enumerate(panels):
         edges = _edges(chains[:, :, row])
@@ -77,8 +84,8 @@ def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
             density.plot(_middles(edges), heights, color=colour, lw=1.2, label=name)
             trace.plot(kept, chains[ensemble, kept, row], color=colour, lw=0.4, alpha=0.8)
         density.spines["left"].set_visible(False)
-        density.set(yticks=[], ylim=(0, None), xlabel=labels[row].replace("\n", " "))
-        density.xaxis.set_major_locator(MaxNLocator(3))
+        density.set(yticks=[], ylim=(0, None), xlabel=labels[row])
+        density.xaxis.set_major_locator(MaxNLocator(2 if narrow else 3))
         trace.yaxis.set_major_locator(MaxNLocator(4))
         trace.tick_params(labelbottom=row == k - 1)
         trace.set(xlim=(0, max(1, n_draws - 1)), ylabel=labels[row].split("\n")[-1])
@@ -122,8 +129,8 @@ def _bandwidth(values: Array, edges: Array, *, power: float) -> float:
     return float(np.std(values)) * len(values) ** -power / float(edges[1] - edges[0])
 
 
-def _draw_marginal(axes: Axes, values: Array, edges: Array) -> None:
-    """Draw a parameter's density, median and central 90 %, titled with these numbers.
+def _draw_marginal(axes: Axes, values: Array, edges: Array) -> str:
+    """Draw a parameter's density, median and central 90 %; return these numbers as text.
 
     They are rounded to two digits of the width of the 90 %, to three decimals if that is 0.
     """
@@ -133,10 +140,10 @@ def _draw_marginal(axes: Axes, values: Array, edges: Array) -> None:
     for edge in (low, high):
         axes.axvline(edge, color=BLUE, lw=0.9, ls="--", label="central 90 %")
     digits = 1 - math.floor(math.log10(high - low)) if high > low else 3
-    low, median, high = (with_minus(f"{value:.{max(digits, 0)}f}") for value in (low, median, high))
-    axes.set_title(f"{median}\n[{low}, {high}]", fontsize=8)
     axes.set(yticks=[], ylim=(0, None))
     axes.spines["left"].set_visible(False)
+    low, median, high = (with_minus(f"{value:.{max(digits, 0)}f}") for value in (low, median, high))
+    return f"{median}\n[{low}, {high}]"
 
 
 def _draw_pair(axes: Axes, values: Array, edges: tuple[Array, Array]) -> None:
@@ -163,18 +170,17 @@ def _draw_pair(axes: Axes, values: Array, edges: tuple[Array, Array]) -> None:
     if most < half < falling[0]:  # not when all draws are one point
         axes.contourf(x, y, smooth.T, levels=[most, half, falling[0]], colors=_REGIONS)
     for colour, mass in zip(_REGIONS, (90, 50), strict=True):
-        axes.fill_between([], [], color=colour, lw=0, label=f"region of {mass} % of the draws")
+        axes.fill_between([], [], color=colour, lw=0, label=f"{mass} % region")
     axes.set_ylim(edges[1][0], edges[1][-1])
 
 
-def _label_corner(axes: Axes, labels: Sequence[str], row: int, column: int) -> None:
+def _label_corner(axes: Axes, labels: Sequence[str], row: int, column: int, ticks: int) -> None:
     """Set ticks and labels of a panel: labels only at the left and lower edge of the figure."""
-    axes.xaxis.set_major_locator(MaxNLocator(3))
-    axes.tick_params(labelsize=8)
+    axes.xaxis.set_major_locator(MaxNLocator(ticks))
     axes.tick_params(axis="x", labelrotation=35)
     axes.set_xlabel(_wrapped(labels[column]))
     if column < row:
-        axes.yaxis.set_major_locator(MaxNLocator(3))
+        axes.yaxis.set_major_locator(MaxNLocator(ticks))
         axes.set_ylabel(_wrapped(labels[row]))
     axes.label_outer()
 

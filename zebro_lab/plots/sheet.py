@@ -8,6 +8,7 @@ import math
 import re
 import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -32,8 +33,9 @@ BAND = BLUE  # of bands of uncertainty: paths, slip curves
 CYCLE = (BLUE, "#E69F00", GREEN, RED, "#CC79A7", PALE_BLUE, "#000000", "#999999")
 _SHOWN_DRAWS = 60
 _TIME_MARGIN = 0.01  # of the time shown
-_TITLE = 10.0  # letters of a title in each inch of a figure's width
-_HANDLE, _LETTER = 0.6, 0.08  # inches of a legend's entry: its symbol, and each letter
+_TITLE = 12.0  # letters of a title in each inch of a figure's width
+_HANDLE, _LETTER = 0.55, 0.07  # inches of a legend's entry: its symbol, and each letter
+_NARROW_PAGE = 5.0  # inches, below which panels and labels have less room
 NARROW = 0.15  # a peak in the first 15 % of the tested slip is drawn in an additional panel
 
 # A decorator. The user's matplotlibrc neither affects the figures nor is changed by them.
@@ -41,9 +43,11 @@ styled = style.context(
     [
         "default",
         {
-            "font.size": 9.0,
-            "axes.titlesize": 9.0,
-            "figure.titlesize": 11.0,
+            "font.size": 8.0,
+            "axes.titlesize": 8.0,
+            "figure.titlesize": 9.0,
+            "figure.labelsize": 8.0,
+            "legend.title_fontsize": 7.0,  # small print
             "legend.frameon": False,
             "axes.spines.top": False,
             "axes.spines.right": False,
@@ -53,6 +57,24 @@ styled = style.context(
         },
     ]
 )
+
+
+@dataclass(frozen=True)
+class Page:
+    """What the figures of a calibration are drawn for.
+
+    Attributes:
+        simulated: Whether their data are simulated.
+        width: Their width in print; None for that on a screen [inch].
+    """
+
+    simulated: bool
+    width: float | None = None
+
+    @property
+    def narrow(self) -> bool:
+        """Whether there is less room for panels and labels than on a screen."""
+        return self.width is not None and self.width < _NARROW_PAGE
 
 
 def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
@@ -80,32 +102,24 @@ def new_figure(title: str, simulated: bool, *, width: float, height: float) -> F
     figure = Figure(figsize=(width, height), dpi=150, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     text = f"{title} (simulated)" if simulated else title
-    figure.suptitle(_title_lines(text, figure), parse_math=False)
+    figure.suptitle(textwrap.fill(text, int(_TITLE * width)), parse_math=False)
     return figure
 
 
-def _title_lines(text: str, figure: Figure) -> str:
-    """Break a title into lines as wide as the figure.
-
-    If it takes two lines, they are broken after its first colon and blank, where both parts fit.
-    """
-    letters = int(_TITLE * figure.get_figwidth())
-    lines = textwrap.wrap(text, letters)
-    head, colon, tail = " ".join(text.split()).partition(": ")
-    if len(lines) == 2 and colon and max(len(head) + 1, len(tail)) <= letters:
-        return f"{head}:\n{tail}"  # rather than in the middle of a phrase
-    return "\n".join(lines)
-
-
 @styled
-def add_to_title(figure: Figure, words: str) -> None:
-    """Append words to the title of a figure.
+def finish(figure: Figure, note: str, *, titled: bool) -> None:
+    """Write a note in small print below the axes of a figure, above its legend if it has one.
 
     Args:
         figure: A figure of `new_figure`.
-        words: What to append, after a colon.
+        note: The note.
+        titled: Whether the figure keeps its title.
     """
-    figure.suptitle(_title_lines(f"{figure.get_suptitle()}: {words}", figure), parse_math=False)
+    if not figure.legends:
+        figure.legend([], [], loc="outside lower center", borderpad=0)
+    figure.legends[0].set_title(note)
+    if not titled:
+        figure.suptitle("")
 
 
 @styled
@@ -115,6 +129,7 @@ def save(
     *,
     command: str | None = None,
     form: PictureFormat | None = None,
+    dpi: float | None = None,
 ) -> None:
     """Write a figure as PNG, at its own resolution, or as SVG or PDF with its fonts inside.
 
@@ -126,9 +141,11 @@ def save(
         command: Command that draws the picture, stored as metadata, by which the command recognises
             a picture of its own; None for a picture in a result folder.
         form: Format of the file; None for that of the path's suffix, PNG for an open file.
+        dpi: Resolution of PNG; None for the figure's own [1/inch].
     """
     form = form or (format_of(path) if isinstance(path, Path) else "png")
-    figure.savefig(path, format=form, dpi="figure", metadata=picture_metadata(form, command))
+    metadata = picture_metadata(form, command)
+    figure.savefig(path, format=form, dpi=dpi or "figure", metadata=metadata)
 
 
 def legend_below(figure: Figure, *, columns: int) -> None:
@@ -147,10 +164,11 @@ def legend_below(figure: Figure, *, columns: int) -> None:
         return
     width = figure.get_figwidth()
     letters = max(10, int((width - 2 * _HANDLE) / _LETTER))  # a longer label is wrapped
-    widest = min(max(map(len, entries)), letters)
+    widest = min(max(len(line) for each in entries for line in each.splitlines()), letters)
     fitting = int(width / (_HANDLE + _LETTER * widest))
     figure.legend(
-        entries.values(), [textwrap.fill(label, letters) for label in entries],
+        entries.values(),
+        ["\n".join(textwrap.fill(line, letters) for line in each.splitlines()) for each in entries],
         loc="outside lower center", ncols=max(1, min(columns, fitting)),
     )  # fmt: skip
 
@@ -267,9 +285,13 @@ def draw_band(axes: Axes, band: Poses | None, *, label: str | None = None, **sty
 TRACTION_LABEL = "traction force [N]"
 
 
-def slip_label(definition: str) -> str:
-    """Return the label of an axis of slip ratios, with the name of the slip definition."""
-    return f"slip ratio, {definition} definition [-]"
+def slip_label(definition: str, width: float = np.inf) -> str:
+    """Return the label of an axis of slip ratios, with the name of the slip definition.
+
+    Beside an axis of a width [inch] it is broken into two lines where it is longer.
+    """
+    label = f"slip ratio, {definition} definition [-]"
+    return label if _LETTER * len(label) < width else label.replace(", ", ",\n")
 
 
 def point_alpha(count: int) -> float:

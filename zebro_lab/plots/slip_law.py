@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Plot slip laws: the surface over slip and load, and the curves of a law without data."""
 
-from typing import Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,14 +16,16 @@ from zebro_lab.plots import sheet
 
 
 @sheet.styled
-def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulated: bool) -> Figure:
+def slip_surface(
+    blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, page: sheet.Page
+) -> Figure:
     """Draw traction over slip and load as a surface, with the block means (compare Fig. 4-15).
 
     Args:
-        blocks: Block means of slip ratio and forces.
+        blocks: Block means of slip ratio and forces, corrected for what the fit estimated.
         law: Slip law to evaluate.
         values: Parameter values of the law, shape (k,).
-        simulated: Whether to append "(simulated)" to the title.
+        page: Whether data are simulated, and width of the figure.
 
     Returns:
         The figure. The surface covers the tested slip and load; loads within a tenth of the largest
@@ -35,14 +37,16 @@ def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulat
         load_low, load_high = 0.8 * load_low, 1.2 * load_high
     slip, load = np.meshgrid(sheet.slip_grid(blocks.slip, 60), np.linspace(load_low, load_high, 25))
     force = law.force(slip, load, np.asarray(values, dtype=float))
-    figure = sheet.new_figure("Slip surface", simulated, width=7.0, height=5.0)
+    width = page.width or 7.0
+    height = 0.8 + 0.65 * width
+    figure = sheet.new_figure("Slip surface", page.simulated, width=width, height=height)
     axes = surface_axes(figure, 111, slip, load, force, definition=str(blocks.definition))
     for row in range(0, len(load), 4):
         axes.plot(slip[row], load[row], force[row], color="0.2", lw=0.5, label="law at one load")
     axes.plot(
         blocks.slip, blocks.normal_force, blocks.traction_force, ls="none", marker="o", ms=2.8,
         mew=0.2, mec="white", color="black", alpha=sheet.point_alpha(len(blocks.slip)),
-        label="block means",
+        label="block means, corrected",
     )  # fmt: skip
     sheet.legend_below(figure, columns=2)
     return figure
@@ -65,15 +69,16 @@ def surface_axes(
     axes.plot_surface(
         slip, load, force, cmap="viridis", linewidth=0, antialiased=False, rstride=1, cstride=1
     )
-    axes.set_xlabel(sheet.slip_label(definition), labelpad=8)
-    axes.set_ylabel("normal force [N]", labelpad=6)
-    axes.set_zlabel("traction force, also as colour [N]", labelpad=8)
-    axes.zaxis.set_tick_params(pad=5)
+    axes.set_xlabel(sheet.slip_label(definition), labelpad=0)
+    axes.set_ylabel("normal force [N]", labelpad=3)
+    axes.set_zlabel("traction force [N]", labelpad=2)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.set_major_locator(sheet.few_ticks(5))
+        axis.set_tick_params(pad=1)
+        axis.set_major_locator(sheet.few_ticks(3))
     axes.view_init(elev=24, azim=-125)
-    # matplotlib's default makes checkers think zoom an int
-    axes.set_box_aspect((1.25, 1.0, 0.75), zoom=1.06)  # pyright: ignore[reportArgumentType]
+    # In a small figure the labels, which zoom does not shrink, need more of the room.
+    zoom: Any = min(1.06, 0.68 + 0.05 * figure.get_figwidth())  # checkers take it for an int
+    axes.set_box_aspect((1.25, 1.0, 0.75), zoom=zoom)
     return axes
 
 

@@ -304,7 +304,7 @@ def leg_limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float
 
 def _label(figure: Figure, t: Array, what: str, *, computed: bool) -> None:
     """Label the axes; write a note in each panel if the model does not compute the quantity."""
-    figure.supylabel(what, fontsize=9.0)
+    figure.supylabel(what)
     for axes in figure.axes[-2:]:
         sheet.time_axis(axes, t)
     for axes in () if computed else figure.axes:

@@ -27,7 +27,7 @@ _WORTH: Final = 1.5
 """Ratio of the size of an exact copy to that at `_QUALITY` up to which it is taken."""
 VALIDATION, ERRORS = "validation", ".errors"
 CAPTIONS: Mapping[str, str] = {
-    "curves": "Block means of the rig's traction force over slip ratio, and the fit, by load",
+    "curves": "The rig's traction over slip ratio, as measured and corrected, and the fit, by load",
     "surface": "Fitted traction force over slip ratio and load",
     "corner": "Posterior of the slip law's parameters, each alone and each pair",
     "traces": "The sampler's walkers over its steps",

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Options of pictures that several commands share: format, snapshots and window of time."""
+"""Options of pictures that several commands share: format, width, snapshots, window of time."""
 
 from typing import Annotated, NamedTuple, TypeAlias
 
 from typer import BadParameter, Option
 
 from zebro_lab.files.picture_format import PictureFormat
+from zebro_lab.files.units import quantity_to_si
 
 
 class Window(NamedTuple):
@@ -54,6 +55,22 @@ def parse_instants(text: str) -> Instants:
         raise BadParameter(f"'{text}' is no list of seconds, such as 0,4,8,14") from None
 
 
+def parse_width(text: str) -> float:
+    """Parse a width with its unit; return it in inches.
+
+    Raises:
+        UnitError: The text is no length, which Typer tells as it does a `BadParameter`.
+        BadParameter: The length is not from 50 to 500 mm.
+
+    >>> parse_width("84mm"), parse_width("3.5 in")
+    (3.3070866141732285, 3.5)
+    """
+    width = quantity_to_si(text, "m")
+    if not 0.05 <= width <= 0.5:
+        raise BadParameter(f"'{text}' is not from 50mm to 500mm, with its unit")
+    return width / 0.0254
+
+
 def _seconds(text: str) -> float:
     """Parse a finite number of seconds; raise `ValueError` for any other text."""
     value = float(text)
@@ -67,3 +84,13 @@ FormatOption: TypeAlias = Annotated[
     Option("--format", help="Format of the pictures; svg and pdf scale without loss."),
 ]
 """Annotation of a request's field `form`."""
+
+WidthOption: TypeAlias = Annotated[
+    float | None,
+    Option(
+        parser=parse_width,
+        metavar="LENGTH",
+        help="Width of the pictures in print, such as 84mm or 3.3in; default: for a screen.",
+    ),
+]
+"""Annotation of a request's field `width` [inch]."""

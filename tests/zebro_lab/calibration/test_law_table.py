@@ -18,6 +18,7 @@ from support.short_calibration import short_calibration
 from zebro_lab.calibration.folder import read_slip_file, write_tables
 from zebro_lab.calibration.law_table import laws_content, laws_csv, sentence
 from zebro_lab.calibration.pictures import draw_calibration
+from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.screen import print_calibration
 from zebro_lab.files.documents import read_toml_document
 
@@ -100,7 +101,7 @@ def test_folder_screen_and_picture_show_the_comparison(compared, tmp_path, monke
     (row,) = [line for line in console.file.getvalue().splitlines() if "clearly worse  " in line]
     assert row.split()[:7] == ["brush", "clearly", "worse", "2", "-36.0", "±", "16.3"]
     saved = figures_saved(monkeypatch)
-    draw_calibration(tmp_path, compared)
+    draw_calibration(tmp_path, compared, CalibrationRequest())
     assert saved["laws.png"].get_suptitle().startswith("Slip laws compared (simulated)")
 
 

@@ -1,28 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Curves of several laws lie where the laws have them, on a scale that shows rise and fall."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from model.slip import Brush
-from support.calibration_scenes import RIG_LOADS
+from support.calibration_scenes import RIG_LOADS, SCREEN
 from support.figure_extents import overhang
-from zebro_lab.plots import slip_laws
+from zebro_lab.plots.laws import slip_laws
 
 
 @pytest.fixture(scope="module")
 def figure(rig):
     laws = {"truth": (rig.law, np.tile(rig.truth, (3, 1))),
             "brush": (Brush(), np.tile((20.4, 0.38), (3, 1)))}  # fmt: skip
-    residual = np.full(len(rig.blocks.slip), 0.07)
-    return slip_laws(
-        rig.blocks,
-        laws,
-        reference="truth",
-        residual=residual,
-        load_levels=RIG_LOADS,
-        simulated=True,
-    )
+    exact = rig.law.force(rig.blocks.slip, rig.blocks.normal_force, rig.truth)
+    blocks = replace(rig.blocks, traction_force=exact + 0.07)
+    return slip_laws(blocks, laws, reference="truth", load_levels=RIG_LOADS, page=SCREEN)
 
 
 def test_each_load_has_curves_and_their_difference_from_the_fitted_one(figure, rig):

@@ -6,16 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from zebro_lab.plots import (
-    residuals,
-)
+from support.calibration_scenes import SCREEN
+from zebro_lab.plots.noise import residuals
 
 
 def test_lags_are_drawn_with_the_band_of_white_noise(rig):
     rng = np.random.default_rng(1)
     n = len(rig.blocks.slip)
     figure = residuals(rig.blocks, whitened=rng.normal(size=n), run_score=rng.normal(size=5),
-                       simulated=True)  # fmt: skip
+                       page=SCREEN)  # fmt: skip
     lags = figure.axes[2]
     points = next(line for line in lags.lines if line.get_marker() == "o")
     assert points.get_xdata().tolist() == [1, 2]  # three blocks a run
@@ -32,7 +31,7 @@ def test_lags_are_drawn_with_the_band_of_white_noise(rig):
 def test_runs_are_drawn_by_rank(rig):
     score = np.array([1.0, -2.0, 0.5])
     figure = residuals(rig.blocks, whitened=np.zeros(len(rig.blocks.slip)) + 1e-3,
-                       run_score=score, simulated=True)  # fmt: skip
+                       run_score=score, page=SCREEN)  # fmt: skip
     points = next(line for line in figure.axes[3].lines if line.get_marker() == "o")
     np.testing.assert_array_equal(points.get_xydata(), [[1, -2.0], [2, 0.5], [3, 1.0]])
 
@@ -44,6 +43,6 @@ def test_a_lag_of_few_pairs_is_not_drawn(rig):
         all_blocks, slip=all_blocks.slip[:21], normal_force=all_blocks.normal_force[:21],
         traction_force=all_blocks.traction_force[:21], run=run,
     )  # fmt: skip
-    figure = residuals(blocks, whitened=np.ones(21), run_score=np.zeros(5), simulated=True)
+    figure = residuals(blocks, whitened=np.ones(21), run_score=np.zeros(5), page=SCREEN)
     points = next(line for line in figure.axes[2].lines if line.get_marker() == "o")
     np.testing.assert_allclose(points.get_xydata(), [[1, 1.0], [2, 1.0]])

@@ -7,15 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
-from support.figure_extents import overhang
+from support.calibration_scenes import SCREEN
+from support.figure_extents import overhang, overlapping_texts
 from zebro_lab.files.picture_format import FORMATS
-from zebro_lab.plots import (
-    add_to_title,
-    save,
-)
-from zebro_lab.plots.sheet import new_figure, slip_grid
+from zebro_lab.plots.sheet import Page, finish, new_figure, save, slip_grid
 
 PICTURES = ("curves", "surface", "corner", "traces", "residuals")
 
@@ -58,8 +56,21 @@ def test_the_slip_axis_names_its_definition(tyre):
 
 def test_simulated_pictures_say_so_and_measured_ones_do_not(one_load):
     for name in PICTURES:
-        title = one_load.picture(name, simulated=False).get_suptitle()
-        assert one_load.picture(name, simulated=True).get_suptitle() == f"{title} (simulated)"
+        title = one_load.picture(name, Page(simulated=False)).get_suptitle()
+        assert one_load.picture(name, SCREEN).get_suptitle() == f"{title} (simulated)"
+
+
+@pytest.mark.parametrize("picture", PICTURES)
+def test_printed_pictures_are_legible_and_nothing_overlaps(rig, one_load, picture):
+    for scene, width, titled in ((rig, 84 / 25.4, False), (one_load, 174 / 25.4, True)):
+        figure = scene.picture(picture, Page(simulated=True, width=width))
+        finish(figure, "SIMULATED data; verdict: not fully tested", titled=titled)
+        assert figure.get_figwidth() == width
+        assert bool(figure.get_suptitle()) is titled
+        assert overhang(figure) <= 0
+        assert not overlapping_texts(figure)
+        sizes = {text.get_fontsize() for text in figure.findobj(Text) if text.get_text()}
+        assert 7.0 <= min(sizes) <= max(sizes) <= 9.0
 
 
 def test_the_users_style_neither_shows_nor_changes(one_load, tmp_path):
@@ -101,14 +112,3 @@ def test_a_pdf_has_its_fonts_inside_as_truetype(tmp_path):
     content = (tmp_path / "a.pdf").read_bytes()
     assert b"/FontFile2" in content
     assert b"/Type3" not in content
-
-
-def test_a_long_title_is_broken_after_its_colon():
-    figure = new_figure(
-        "Traction: tripod, steering 1.3, thesis", simulated=True, width=4.5, height=3.0
-    )
-    assert figure.get_suptitle() == "Traction:\ntripod, steering 1.3, thesis (simulated)"
-    add_to_title(figure, "NOT TRUSTWORTHY")
-    assert figure.get_suptitle().replace("\n", " ") == (
-        "Traction: tripod, steering 1.3, thesis (simulated): NOT TRUSTWORTHY"
-    )

@@ -11,7 +11,7 @@ from zebro_lab.plots.slip_law import THESIS_LOADS, slip_law
 
 def test_the_surface_is_the_law_over_tested_slip_and_load(rig):
     (axes,) = rig.picture("surface").axes
-    assert axes.get_zlabel() == "traction force, also as colour [N]"
+    assert axes.get_zlabel() == "traction force [N]"
     ridges = [line.get_data_3d() for line in axes.lines[:-1]]
     for slip, load, force in ridges:
         np.testing.assert_allclose(force, rig.law.force(slip, load, rig.truth))

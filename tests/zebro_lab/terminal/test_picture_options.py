@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer import BadParameter
 
-from zebro_lab.terminal.picture_options import parse_instants, parse_window
+from zebro_lab.files.errors import UnitError
+from zebro_lab.terminal.picture_options import parse_instants, parse_width, parse_window
 
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=9))
@@ -35,3 +36,9 @@ def test_what_is_no_window_is_refused(text):
 def test_a_window_ends_after_it_begins(text):
     with pytest.raises(BadParameter, match="expected an end after"):
         parse_window(text)
+
+
+@pytest.mark.parametrize("text", ["", "84", "84 kg", "84km", "20mm", "nan mm"])
+def test_what_is_no_width_of_a_page_is_refused(text):
+    with pytest.raises((BadParameter, UnitError), match="unit"):
+        parse_width(text)

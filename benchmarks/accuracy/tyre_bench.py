@@ -10,7 +10,7 @@ samples of left-out runs, and the chi-square of the mean residuals of all loads 
 standard deviation is made of the variance between runs, over all groups, and that of block means
 within runs, whatever the model says of noise. Beside them stands scipy's least-squares fit of all
 samples, with and without shifts of slip and of force over load. The last column is the verdict's
-own check of the groups.
+own answer, whether the curve goes through the points.
 """
 
 import sys
@@ -20,7 +20,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from model.bayes.checks.groups import groups
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.special import chdtrc
@@ -28,6 +27,8 @@ from scipy.special import chdtrc
 from model.arrays import Array
 from model.bayes.averaging.load_levels import load_levels, nearest_level
 from model.bayes.checks.linear import linearise
+from model.bayes.checks.points import group_residuals
+from model.bayes.checks.questions import points
 from model.bayes.cross_validation import r_squared
 from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell, validated
@@ -174,7 +175,7 @@ def chosen(data: RigData, choice: BlockChoice) -> tuple[str, PreparedFit]:
 
 
 def judged(name: str, data: RigData, fit: PreparedFit) -> str:
-    """Return a line of the table: R², chi-square of the groups, and the verdict's own check."""
+    """Return a line of the table: R², chi-square of the groups, and the verdict's own answer."""
     posterior, rng = fit.posterior, np.random.default_rng(3)
     weighted = weighted_draws(posterior.log_density, fit.approximation, n=N_DRAWS, rng=rng)
     z = weighted.resample(RESAMPLED, rng=rng)
@@ -189,7 +190,8 @@ def judged(name: str, data: RigData, fit: PreparedFit) -> str:
     if validation is not None:
         measured = data.samples.traction_force
         score = r_squared(measured, validation.predict(data.samples, posterior.law))
-    check = groups(linearise(posterior, z), None)
+    linear = linearise(posterior, z, zero_stability=fit.load_cell.zero_stability)
+    check = points(group_residuals(linear), [], blocks)
     return (
         f"{name:28s} {score:8.5f} {found.square:7.1f} of {len(found.mean)} {found.p:8.2g}   "
         f"{check.outcome.name.lower()}"
@@ -220,7 +222,7 @@ def main(arguments: Sequence[str]) -> None:
     said, best = chosen(data, plain.block_choice)
     errors = _fit(data, MagicFormula("constant"), data.rig_errors, plain.block_choice)
     print(said)
-    print(f"{'':28s} {'R² left':>8s} {'chi²':>12s} {'p':>8s}   verdict's own check")
+    print(f"{'':28s} {'R² left':>8s} {'chi²':>12s} {'p':>8s}   verdict's own answer")
     print(judged("plain law", data, plain), flush=True)
     print(judged("with errors of the rig", data, errors), flush=True)
     print(judged("chosen", data, best))

@@ -99,4 +99,4 @@ def test_recorded_twins_end_in_a_judged_prediction_on_one_page(tmp_path, monkeyp
     assert errors.loc["prediction", "ate_m"] < 0.1 * errors.loc["stand still", "ate_m"]
     said = run("report", walked, "--out", "page.html")
     assert "does not belong together" not in said
-    assert "Slip curve: NOT CONVERGED" in Path("page.html").read_text()
+    assert "Slip curve: NOT TRUSTWORTHY" in Path("page.html").read_text()

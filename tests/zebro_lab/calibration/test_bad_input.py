@@ -75,7 +75,7 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
         pd.DataFrame(
             {
                 "t": np.arange(2000) * 0.01,
-                "slip_ratio": np.random.default_rng(5).normal(0.1, 0.006, 2000),
+                "slip_ratio": np.random.default_rng(6).normal(0.1, 0.006, 2000),
                 "normal_force": 5.0,
                 "traction_force": 1.0,
                 "slip_definition": "material",

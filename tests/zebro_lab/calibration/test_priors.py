@@ -127,7 +127,7 @@ def test_what_was_stated_is_recorded_with_how_the_data_agree():
 def test_simulated_and_untrustworthy_priors_are_said(tmp_path):
     write_tables(tmp_path, short_calibration(), inputs={})
     warned, simulated = read_earlier(tmp_path).notes
-    assert "not trustworthy: NOT CONVERGED" in warned
+    assert "not trustworthy: the sampler did not converge" in warned
     assert "SIMULATED data, source 'sim:test'" in simulated
 
 

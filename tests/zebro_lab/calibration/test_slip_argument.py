@@ -41,7 +41,7 @@ slip_ratio = [0.0, 1.0]
 @pytest.fixture
 def calibration(tmp_path):
     """Return a folder with a slip.toml."""
-    text = SLIP_TOML.format(headline="converged, trustworthy", trustworthy="true")
+    text = SLIP_TOML.format(headline="trustworthy", trustworthy="true")
     (tmp_path / "slip.toml").write_text(text)
     return tmp_path
 
@@ -61,17 +61,17 @@ def test_title_has_no_path(calibration):
 
 
 def test_untrustworthy_calibration_is_said_to_be(calibration):
-    text = SLIP_TOML.format(headline="NOT CONVERGED", trustworthy="false")
+    text = SLIP_TOML.format(headline="not trustworthy", trustworthy="false")
     (calibration / "slip.toml").write_text(text)
     (note,) = parse_slip(str(calibration)).notes
-    assert note == "WARNING: the calibration is not trustworthy: NOT CONVERGED"
+    assert note == "WARNING: the calibration is not trustworthy: not trustworthy"
     assert parse_slip(str(calibration)).doubts == (note,)
 
 
 def test_what_was_not_tested_is_noted_and_is_no_doubt(calibration):
-    headline = "converged and trustworthy as far as tested; untested: peak"
+    headline = "not fully tested; untested: peak"
     text = SLIP_TOML.format(headline=headline, trustworthy="false").replace(
-        "trustworthy = false", 'trustworthy = false, state = "trustworthy as far as tested"'
+        "trustworthy = false", 'trustworthy = false, state = "not fully tested"'
     )
     (calibration / "slip.toml").write_text(text)
     found = parse_slip(str(calibration))

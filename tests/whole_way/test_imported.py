@@ -41,7 +41,7 @@ def test_tables_of_others_end_in_a_judged_prediction_on_one_page(command, tmp_pa
     said = command("report", run, "--out", "page.html")
     assert "does not belong together" not in said
     page = (tmp_path / "page.html").read_text()
-    assert "NOT TRUSTWORTHY" in page
+    assert "not trustworthy" in page
     assert "the predicted path is" in page
     commits = {json.loads(file.read_text())["software"]["commit"]
                for file in (run / "run.json", run / "validation/manifest.json")}  # fmt: skip

@@ -22,9 +22,8 @@ def known(*, noise, rho=0.0, tau=0.0):
 def corrected(blocks, *, noise, rho=0.0, tau=0.0, zeros=True):
     """Return simulated blocks, these corrected by the true values, and what is left over."""
     values = known(noise=noise, rho=rho, tau=tau)
-    simulated = np.insert(values, -2, 0.0)  # of noise that grows with the force
     rng = np.random.default_rng(1)
-    measured = simulate_blocks(blocks, THESIS_LAW, simulated, rng=rng)
+    measured = simulate_blocks(blocks, THESIS_LAW, values, rng=rng)
     found = corrected_blocks(measured, THESIS_LAW, values, zeros=zeros)
     law = THESIS_LAW.force(found.slip, found.normal_force, THESIS_VALUES)
     return measured, found, found.traction_force - law

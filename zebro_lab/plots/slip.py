@@ -134,5 +134,5 @@ def _draw(
 
 def _peak_text(peaks: Array) -> str:
     """Format the first of the peaks: of driving, or of braking where only that was tested."""
-    at = [sheet.plain(each) for each in peaks[:1].ravel()]
+    at = [sheet.plain(each) for each in peaks[:1].ravel().tolist()]
     return f"peak {at[1]} N at {at[0]}" if at else "no peak tested"

@@ -275,8 +275,8 @@ def _run_means(part: RigPart, values: Array) -> Array:
 
 def _correlation(first: Array, second: Array) -> float:
     """Return the rank correlation of two arrays, which a curve between them does not lower [-]."""
-    ranks = [np.argsort(np.argsort(each)) for each in (first, second)]
-    return float(np.corrcoef(*ranks)[0, 1])
+    ranks = np.array([np.argsort(np.argsort(each)) for each in (first, second)], dtype=float)
+    return float(np.corrcoef(ranks)[0, 1])
 
 
 def joined_source(parts: Sequence[RigPart]) -> str:

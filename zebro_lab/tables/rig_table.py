@@ -3,6 +3,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -90,7 +91,8 @@ class RigTable:
         for name, cells in self.raw.columns.items():
             if name in used or name in self.columns.runs.by or name in self.raw.repeated:
                 continue
-            values = pd.to_numeric(cells, errors="coerce").to_numpy(dtype=float)[self.rows]
+            numbers: Any = pd.to_numeric(cells, errors="coerce")  # pandas' stub has every result
+            values = np.asarray(numbers, dtype=float)[self.rows]
             if np.isfinite(values).all():
                 found[name] = values
         return found

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import fdtri
 
 from model.arrays import Array
@@ -88,7 +89,7 @@ def compare_plain(
     return Comparison(float(away[0]), float(away[1]), float(np.sqrt(square / limit)))
 
 
-def _block_of_rows(fit: Linearised, plain: PlainFit) -> Array:
+def _block_of_rows(fit: Linearised, plain: PlainFit) -> NDArray[np.intp]:
     """Return the block about each row of the plain fit, by its place within its run, (rows,)."""
     starts, test = fit.blocks.run_starts(), plain.rows.test
     run = test if test[-1] + 1 == fit.blocks.n_runs else np.zeros_like(test)
@@ -98,7 +99,7 @@ def _block_of_rows(fit: Linearised, plain: PlainFit) -> Array:
     return starts[run] + np.minimum((place * size).astype(int), size - 1)
 
 
-def _true_slips(fit: Linearised, slip: Array, block: Array) -> Array:
+def _true_slips(fit: Linearised, slip: Array, block: NDArray[np.intp]) -> Array:
     """Estimate the true slip of each row from its measured one and its block's, shape (rows,).
 
     Several rows of a block differ by wander and noise; the share of wander is that of the block.

@@ -12,15 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 import pytest
-from model.bayes.checks.inspection import inspect
 
 from model.arrays import Array
-from model.bayes.checks.linear import linearise
 from model.bayes.drawing.convergence import Convergence
 from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.estimate import Agreement
 from model.bayes.fit import prepare_fit, scaled_load_cell
-from model.bayes.residuals import analyse_residuals
 from model.bayes.verdict import State, judge
 from model.errors import ModelError
 from model.slip.magic_formula import MagicFormula
@@ -105,18 +102,12 @@ def judged(data: Data, folder) -> tuple[State | None, str]:
     posterior = fit.posterior
     weighted = weighted_draws(posterior.log_density, fit.approximation, n=2000, rng=rng)
     z = weighted.resample(400, rng=rng)
-    values = posterior.values(z)
     verdict = judge(
-        blocks=posterior.blocks, law=law, values=values,
+        fit, found.samples, z=z, convergence=CONVERGED, agreement=Agreement(0.0, 0.0, 0.0),
         contraction=dict(zip((p.name for p in posterior.free), 1 - z.var(axis=0), strict=True)),
-        convergence=CONVERGED, residuals=analyse_residuals(posterior.blocks, law, values),
-        agreement=Agreement(0.0, 0.0, 0.0),
-        inspection=inspect(posterior, linearise(posterior, z), found.samples, fit.block_choice),
-        offset_scale=cell.zero_stability,
     )  # fmt: skip
     notes = [note for note in found.notes if note.startswith("IMPROBABLE")]
-    reasons = [step.reason for step in verdict.next_steps()]
-    return verdict.state, " ".join([verdict.headline(), *notes, *reasons])
+    return verdict.state, " ".join([verdict.headline(), *notes, *verdict.notes])
 
 
 def one_run(seed: int) -> Data:

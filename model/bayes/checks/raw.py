@@ -24,9 +24,10 @@ SLIPPING = 0.3  # of the largest traction over load: beyond, a zero error hides 
 OPPOSED = 0.9  # share of a run's samples
 STRETCH = 6  # equal successive samples that are looked at
 UNLIKELY = 4.0  # times as many such stretches as by chance
-PROMINENT = 15.0  # times the power of the frequencies beside
+PROMINENT = 30.0  # times the power of the frequencies beside
 LEAST_SWING = 0.01  # amplitude over traction
 FEWEST_SWINGING = 3  # runs
+FEWEST_PERIODS = 4  # in a run: slower noise is stronger, too
 STEADY = 0.1  # change of slip within a run that is no sweep, over the largest slip
 
 
@@ -266,7 +267,7 @@ def _swing(
     force = detrended(residual[part])
     spectrum = np.abs(np.fft.rfft(force * window)) ** 2
     height = spectrum / _beside(spectrum)
-    height[:3] = 0
+    height[:FEWEST_PERIODS] = 0
     top = int(np.argmax(height))
     span, level = (
         np.quantile(force, [0.025, 0.975]),

@@ -2,19 +2,25 @@
 """Advice holds lines, commands and options that can be used as they stand."""
 
 import tomllib
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from model.bayes.advice import (
     Advice,
     ExcludeRuns,
+    MeasureAlso,
     MeasureSlips,
     SampleLonger,
     TryLaws,
     WeighLoadCell,
     ZeroBeforeEach,
 )
-from zebro_lab.calibration.advice import SECONDS, SHORT, advice_text
+from model.bayes.checks.check import decided
+from model.bayes.verdict import Verdict
+from support.judged_fits import blocks_at
+from zebro_lab.calibration.advice import SECONDS, SHORT, advice_text, advice_texts, of_table
 
 
 def plan_in(advice: str) -> dict:
@@ -62,6 +68,25 @@ def test_rows_of_a_table_are_left_out_by_their_numbers():
     given = [tomllib.loads("\n".join(line.split(" ", 1))) for line in text.splitlines()[1:]]
     assert given == [{"runs": {"leave_out": rows}} for rows in ([8, 12], [3])]
     assert "zebro-lab exclude" not in text
+
+
+def test_a_table_of_means_has_no_plan_and_no_run_folders():
+    """Who brings a table has rows to add, to mend or to leave out."""
+    advices = (
+        MeasureSlips("x", (5.0, 10.0), (0.01, 0.2)), MeasureAlso("x", loads=(2.0, 8.0)),
+        MeasureAlso("x", repeats=2), ZeroBeforeEach("x"), ExcludeRuns("x", ("table row 8",)),
+    )  # fmt: skip
+    for advice in advices:
+        text = of_table(advice)
+        assert text.startswith("x: ")
+        assert "[points]" not in text
+        assert "zebro-lab exclude" not in text
+    assert "0.01, 0.2, at loads of 5, 10 N" in of_table(advices[0])
+    verdict = Verdict((decided("Question?", False, "", *advices[:2], advices[1]),))
+    for per_run, written in ((1, of_table), (6, advice_text)):
+        blocks = blocks_at(np.array([0.1, 0.2]), per_run=per_run)
+        fit = SimpleNamespace(posterior=SimpleNamespace(blocks=blocks), verdict=verdict)
+        assert advice_texts(fit) == [written(each) for each in advices[:2]]
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,12 @@ from model.slip import SlipDefinition, convert_slip
 from support.rig_tables import RADII, N, columns, given_slip, speeds, write
 from support.table_runs import slip_rig_run
 from support.written_runs import edit
-from zebro_lab.calibration.rig_part import RigPart, read_part, recorded_sweeps
+from zebro_lab.calibration.rig_part import (
+    RigPart,
+    joined_samples,
+    read_part,
+    recorded_sweeps,
+)
 from zebro_lab.files.errors import DataError
 from zebro_lab.runs.data_paths import DataSource
 from zebro_lab.runs.folder import SlipRigRun
@@ -81,6 +86,28 @@ def test_given_slip_keeps_its_definition_unless_another_is_wanted(tmp_path, want
     assert part.slip.definition == (wanted or "travel")
     expected = convert_slip(np.linspace(0.0, 0.5, N), "material", wanted or "travel")
     np.testing.assert_allclose(part.slip.ratio, expected, atol=1e-12)
+
+
+def test_unused_columns_are_offered_where_they_differ_between_runs_and_follow_no_used_one(tmp_path):
+    rng, run = np.random.default_rng(1), np.repeat(np.arange(8), 5)
+    table = given_slip("material").assign(run=run, operator="a")
+    table["normal_force"] = 5.0 + rng.permutation(8)[run]
+    table = table.assign(
+        room=20 + rng.permutation(8)[run], jitter=rng.standard_normal(N),
+        mu=table["traction_force"] / table["normal_force"], force_kN=table["traction_force"] / 1e3,
+        percent=100 * table["slip_ratio"], weight=9.81 * table["normal_force"], fixed=3.0,
+    )  # fmt: skip
+    mapped = read_columns(columns(tmp_path, '[runs]\nby = ["run"]\n'))
+    part = part_of(write(tmp_path, table), mapped=mapped)
+    found = joined_samples([part]).others
+    assert list(found) == ["room"]
+    np.testing.assert_array_equal(found["room"], table["room"])
+    chosen = part.with_runs(np.arange(8) > 3)
+    assert (
+        joined_samples([part, chosen]).others["room"].tolist()[-20:] == table["room"].tolist()[20:]
+    )
+    bare = part_of(write(tmp_path / "bare", table.drop(columns="room")), mapped=mapped)
+    assert joined_samples([part, bare]).others == {}
 
 
 def test_a_run_folder_is_read_by_its_own_constants_whatever_the_map_says(tmp_path):

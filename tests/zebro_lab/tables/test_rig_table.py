@@ -34,6 +34,15 @@ def test_columns_are_in_si_with_the_canonical_sign_of_the_kept_rows():
     assert table.source_of("traction_force") is None
 
 
+def test_unused_columns_are_numbers_that_neither_the_map_nor_the_runs_need():
+    mapped = {"normal_force": MappedColumn("FZ", "kN", -1e3)}
+    table = table_of(
+        mapped, {}, FZ=[-1.0, -2.0], t=[0.0, 0.1], run=["a", "b"], room=[19.0, 21.0],
+        operator=["x", "y"], gap=[1.0, np.nan],
+    )  # fmt: skip
+    assert {name: values.tolist() for name, values in table.unused().items()} == {"room": [21.0]}
+
+
 def test_a_cell_is_named_as_the_file_has_it():
     table = table_of({"normal_force": MappedColumn("FZ", "kN", -1e3)}, {}, FZ=[-1.0, 2.0])
     with pytest.raises(

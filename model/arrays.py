@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Array type that every package annotates with."""
+"""Array types that every package annotates with."""
 
 from typing import Any, TypeAlias
 
@@ -7,3 +7,5 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.floating[Any]]
+Numbers: TypeAlias = float | Array
+"""Of functions that take a number or arrays that broadcast, and are compiled for numbers too."""

@@ -18,7 +18,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-Numbers = float | NDArray[np.floating]
+from model.arrays import Numbers
 
 HIP, ROLLING, TOE = 0, 1, 2  # leg states
 

@@ -5,14 +5,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numba.extending import register_jitable
 
-from model.arrays import Array
+from model.arrays import Array, Numbers
 from model.slip.law import Parameter, Values
 from model.slip.proportional import ProportionalLaw
 
 
-def sliding_share(sigma: ArrayLike, K: ArrayLike, mu: ArrayLike) -> Array:
+@register_jitable
+def sliding_share(sigma: Numbers, K: Numbers, mu: Numbers) -> Numbers:
     r"""Compute the share of the brush model's contact patch that slides at a slip ratio.
 
     .. math::
@@ -30,10 +31,11 @@ def sliding_share(sigma: ArrayLike, K: ArrayLike, mu: ArrayLike) -> Array:
     Returns:
         Share of the patch, from 0 (all stick) to 1 (all slide) [-].
     """
-    return np.minimum(np.asarray(K) * np.abs(np.asarray(sigma)) / (3 * np.asarray(mu)), 1.0)
+    return np.minimum(K * np.abs(sigma) / (3 * mu), 1.0)
 
 
-def brush(sigma: ArrayLike, K: ArrayLike, mu: ArrayLike) -> Array:
+@register_jitable
+def brush(sigma: Numbers, K: Numbers, mu: Numbers) -> Numbers:
     r"""Compute traction over load of the brush model at a material slip ratio.
 
     .. math::
@@ -54,10 +56,10 @@ def brush(sigma: ArrayLike, K: ArrayLike, mu: ArrayLike) -> Array:
     0.2815
     """
     psi = sliding_share(sigma, K, mu)
-    return np.sign(np.asarray(sigma)) * np.asarray(mu) * psi * (3 - 3 * psi + psi**2)
+    return np.sign(sigma) * mu * psi * (3 - 3 * psi + psi**2)
 
 
-def brush_slope(sigma: ArrayLike, K: ArrayLike, mu: ArrayLike) -> Array:
+def brush_slope(sigma: Numbers, K: Numbers, mu: Numbers) -> Numbers:
     r"""Compute the derivative of `brush` with respect to material slip ratio [-].
 
     .. math::
@@ -70,7 +72,7 @@ def brush_slope(sigma: ArrayLike, K: ArrayLike, mu: ArrayLike) -> Array:
         K: Slip stiffness [-].
         mu: Friction of a bristle [-].
     """
-    return np.asarray(K) * (1 - sliding_share(sigma, K, mu)) ** 2
+    return K * (1 - sliding_share(sigma, K, mu)) ** 2
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ class Brush(ProportionalLaw):
                   "peak traction over load", (0.6, 0.7)),
     )  # fmt: skip
 
-    def coefficients(self, values: Values) -> tuple[Array, Array]:
+    def constants(self, values: Values) -> tuple[Array, Array]:
         """Return K and mu as arrays.
 
         Args:

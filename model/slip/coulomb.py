@@ -5,14 +5,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numba.extending import register_jitable
 
-from model.arrays import Array
+from model.arrays import Array, Numbers
 from model.slip.law import Parameter, Values
 from model.slip.proportional import ProportionalLaw
 
 
-def breakaway_slip(K: ArrayLike, mu: ArrayLike) -> Array:
+@register_jitable
+def breakaway_slip(K: Numbers, mu: Numbers) -> Numbers:
     r"""Compute the slip ratio at which static friction is fully developed.
 
     .. math::
@@ -25,10 +26,11 @@ def breakaway_slip(K: ArrayLike, mu: ArrayLike) -> Array:
     Returns:
         Break-away slip ratio kappa_c [-].
     """
-    return 1.5 * np.asarray(mu, dtype=float) / np.asarray(K, dtype=float)
+    return 1.5 * mu / K
 
 
-def regularised_sign(kappa: ArrayLike, kappa_c: ArrayLike) -> Array:
+@register_jitable
+def regularised_sign(kappa: Numbers, kappa_c: Numbers) -> Numbers:
     r"""Compute the sign of the slip ratio, smoothed by a cubic between -kappa_c and kappa_c.
 
     .. math::
@@ -45,11 +47,12 @@ def regularised_sign(kappa: ArrayLike, kappa_c: ArrayLike) -> Array:
     Returns:
         A number in [-1, 1], odd in `kappa` [-].
     """
-    u = np.clip(np.asarray(kappa) / np.asarray(kappa_c), -1.0, 1.0)
+    u = np.minimum(np.maximum(kappa / kappa_c, -1.0), 1.0)
     return 0.5 * u * (3 - u**2)
 
 
-def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: ArrayLike) -> Array:
+@register_jitable
+def stribeck_fall(kappa: Numbers, kappa_c: Numbers, kappa_s: Numbers, q: Numbers) -> Numbers:
     r"""Compute the ratio of friction at a slip ratio to static friction (Stribeck curve).
 
     .. math::
@@ -65,13 +68,13 @@ def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: A
     Returns:
         Friction over static friction, from q to 1, even in `kappa` [-].
     """
-    q = np.asarray(q)
     return q + (1 - q) * np.exp(-(_slip_past_breakaway(kappa, kappa_c, kappa_s) ** 2))
 
 
+@register_jitable
 def coulomb_stribeck(
-    kappa: ArrayLike, K: ArrayLike, mu: ArrayLike, q: ArrayLike, kappa_s: ArrayLike
-) -> Array:
+    kappa: Numbers, K: Numbers, mu: Numbers, q: Numbers, kappa_s: Numbers
+) -> Numbers:
     r"""Compute traction over load of Coulomb friction with a Stribeck drop, at a slip ratio.
 
     .. math::
@@ -97,13 +100,12 @@ def coulomb_stribeck(
     0.28
     """
     kappa_c = breakaway_slip(K, mu)
-    rise = regularised_sign(kappa, kappa_c)
-    return np.asarray(mu) * rise * stribeck_fall(kappa, kappa_c, kappa_s, q)
+    return mu * regularised_sign(kappa, kappa_c) * stribeck_fall(kappa, kappa_c, kappa_s, q)
 
 
 def coulomb_stribeck_slope(
-    kappa: ArrayLike, K: ArrayLike, mu: ArrayLike, q: ArrayLike, kappa_s: ArrayLike
-) -> Array:
+    kappa: Numbers, K: Numbers, mu: Numbers, q: Numbers, kappa_s: Numbers
+) -> Numbers:
     r"""Compute the derivative of `coulomb_stribeck` with respect to slip ratio [-].
 
     .. math::
@@ -120,18 +122,17 @@ def coulomb_stribeck_slope(
         kappa_s: Stribeck slip [-].
     """
     kappa_c = breakaway_slip(K, mu)
-    u = np.clip(np.asarray(kappa) / kappa_c, -1.0, 1.0)
+    u = np.clip(kappa / kappa_c, -1.0, 1.0)
     z = _slip_past_breakaway(kappa, kappa_c, kappa_s)
-    fall = 2 * np.asarray(mu) * (1 - np.asarray(q)) * z / np.asarray(kappa_s) * np.exp(-(z**2))
-    return np.asarray(K) * (1 - u**2) - fall
+    return K * (1 - u**2) - 2 * mu * (1 - q) * z / kappa_s * np.exp(-(z**2))
 
 
-def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike) -> Array:
+@register_jitable
+def _slip_past_breakaway(kappa: Numbers, kappa_c: Numbers, kappa_s: Numbers) -> Numbers:
     """Compute z, absolute slip ratio less kappa_c, over Stribeck slip kappa_s, within [0, 40]."""
     # Beyond 40 Stribeck slips exp(-z²) is zero in double precision; the bound keeps infinite slip
     # (a locked leg by material slip) from giving inf·0.
-    past = (np.abs(np.asarray(kappa)) - np.asarray(kappa_c)) / np.asarray(kappa_s)
-    return np.clip(past, 0.0, 40.0)
+    return np.minimum(np.maximum((np.abs(kappa) - kappa_c) / kappa_s, 0.0), 40.0)
 
 
 @dataclass(frozen=True)
@@ -154,7 +155,7 @@ class CoulombStribeck(ProportionalLaw):
         """The parameters K, mu and, if `stribeck`, q and kappa_s, in the order of `values`."""
         return (*_COMMON, *(_STRIBECK if self.stribeck else ()))
 
-    def coefficients(self, values: Values) -> tuple[Array, Array, Array, Array]:
+    def constants(self, values: Values) -> tuple[Array, Array, Array, Array]:
         """Return K, mu, q and kappa_s as arrays; q and kappa_s are 1 unless `stribeck`.
 
         Args:
@@ -174,8 +175,8 @@ class CoulombStribeck(ProportionalLaw):
         Args:
             values: Parameter values, one entry a parameter.
         """
-        K, mu, _, _ = self.coefficients(values)
-        return breakaway_slip(K, mu) if self.stribeck else np.array(math.inf)
+        K, mu, _, _ = self.constants(values)
+        return np.asarray(breakaway_slip(K, mu) if self.stribeck else math.inf)
 
 
 _COMMON = (

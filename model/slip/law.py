@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Interface of every slip law: traction force from slip ratio and normal force."""
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import ClassVar, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from model.arrays import Array
+from model.arrays import Array, Numbers
 
 Values: TypeAlias = Sequence[ArrayLike] | Array
 
@@ -36,6 +37,32 @@ class Parameter:
     upper: float
     meaning: str
     typical: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class CompiledForce:
+    r"""A law's force at one vector of parameter values, as compiled loops compute it.
+
+    .. math::
+        F = m N\, f(h \kappa)
+
+    with f `traction_over_load` of the slip and the coefficients of `at_load`, and m and h the
+    factors of the side of the slip, `driving` where it is not negative.
+
+    Attributes:
+        at_load: Function of load and constants to the coefficients of `traction_over_load`; see
+            `EquationLaw`.
+        traction_over_load: Function of slip and coefficients to traction over load.
+        constants: The second argument of `at_load`.
+        driving: Factors m on friction and h on slip where slip drives.
+        braking: The same where it brakes.
+    """
+
+    at_load: Callable[..., tuple[Numbers, ...]]
+    traction_over_load: Callable[..., Numbers]
+    constants: tuple[float, ...]
+    driving: tuple[float, float] = (1.0, 1.0)
+    braking: tuple[float, float] = (1.0, 1.0)
 
 
 class SlipLaw(Protocol):
@@ -72,6 +99,14 @@ class SlipLaw(Protocol):
         """
         ...
 
+    def compiled_force(self, values: Values) -> CompiledForce:
+        """Return the force at one vector of parameter values, for compiled loops.
+
+        Args:
+            values: Parameter values, shape (k,).
+        """
+        ...
+
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
         """Compute the derivative of the force with respect to slip ratio [N].
 
@@ -103,3 +138,49 @@ class SlipLaw(Protocol):
             values: Parameter values, one entry a parameter.
         """
         ...
+
+
+class EquationLaw(ABC):
+    """Force of a `SlipLaw` by equations that stand once, for arrays and for compiled loops.
+
+    Both are functions of a module, under numba's `register_jitable`, that take numbers or arrays:
+    they call functions of numpy of one value (`np.sin`, `np.minimum`, not `np.where`, `np.clip` or
+    `np.asarray`), and choose between arrays without a branch.
+
+    Attributes:
+        at_load: Function from load [N] and the law's `constants` to a tuple of coefficients.
+        traction_over_load: Function from slip ratio and these coefficients to traction over load
+            [-].
+    """
+
+    at_load: ClassVar[Callable[..., tuple[Numbers, ...]]]
+    traction_over_load: ClassVar[Callable[..., Numbers]]
+
+    @abstractmethod
+    def constants(self, values: Values) -> tuple[Numbers, ...]:
+        """Compute what `at_load` takes besides the load; the law's options are among it.
+
+        Args:
+            values: Parameter values, one entry a parameter.
+        """
+
+    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the traction force [N]; see `SlipLaw.force`.
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
+        Fn = np.asarray(load, dtype=float)
+        coefficients = self.at_load(Fn, self.constants(values))
+        return Fn * self.traction_over_load(np.asarray(slip, dtype=float), *coefficients)
+
+    def compiled_force(self, values: Values) -> CompiledForce:
+        """Return the force at one vector of parameter values, for compiled loops.
+
+        Args:
+            values: Parameter values, shape (k,).
+        """
+        constants = tuple(float(each) for each in self.constants(values))
+        return CompiledForce(self.at_load, self.traction_over_load, constants)

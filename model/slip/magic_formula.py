@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
-from model.arrays import Array
-from model.slip.law import Parameter, Values
+from model.arrays import Array, Numbers
+from model.slip.law import EquationLaw, Parameter, Values
 
 
-def magic_formula(
-    kappa: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike, E: ArrayLike
-) -> Array:
+@register_jitable
+def magic_formula(kappa: Numbers, B: Numbers, C: Numbers, D: Numbers, E: Numbers) -> Numbers:
     r"""Compute the traction force by Pacejka's Magic Formula, Eq. (4-23).
 
     .. math::
@@ -38,14 +38,12 @@ def magic_formula(
     >>> float(magic_formula(0.1, B=34.34, C=1.564, D=1.0, E=0.0).round(4))
     0.9036
     """
-    Bk = np.asarray(B) * np.asarray(kappa)
-    phi = Bk - np.asarray(E) * (Bk - np.arctan(Bk))
-    return np.asarray(D) * np.sin(np.asarray(C) * np.arctan(phi))
+    Bk = B * kappa
+    phi = Bk - E * (Bk - np.arctan(Bk))
+    return D * np.sin(C * np.arctan(phi))
 
 
-def magic_formula_slope(
-    kappa: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike, E: ArrayLike
-) -> Array:
+def magic_formula_slope(kappa: Array, B: Array, C: Array, D: Array, E: Array) -> Array:
     r"""Compute the derivative of `magic_formula` with respect to slip ratio [N].
 
     .. math::
@@ -61,14 +59,14 @@ def magic_formula_slope(
         D: Peak force [N].
         E: Curvature factor [-].
     """
-    B, C, E = np.asarray(B), np.asarray(C), np.asarray(E)
-    Bk = B * np.asarray(kappa)
+    Bk = B * kappa
     phi = Bk - E * (Bk - np.arctan(Bk))
     phi_slope = B * (1 - E * Bk**2 / (1 + Bk**2))
-    return np.asarray(D) * np.cos(C * np.arctan(phi)) * C / (1 + phi**2) * phi_slope
+    return D * np.cos(C * np.arctan(phi)) * C / (1 + phi**2) * phi_slope
 
 
-def curvature_from_peak(B: ArrayLike, C: ArrayLike, x_m: ArrayLike) -> Array:
+@register_jitable
+def curvature_from_peak(B: Numbers, C: Numbers, x_m: Numbers) -> Numbers:
     r"""Compute the curvature factor that puts the peak at slip x_m, Eq. (4-27).
 
     .. math::
@@ -86,23 +84,48 @@ def curvature_from_peak(B: ArrayLike, C: ArrayLike, x_m: ArrayLike) -> Array:
     >>> float(curvature_from_peak(34.34, 1.564, 0.0066 * 6.63).round(3))
     -0.134
     """
-    Bx = np.asarray(B) * np.asarray(x_m)
-    return (Bx - np.tan(np.pi / (2 * np.asarray(C)))) / _minus_arctan(Bx)
+    return _curvature(B * x_m, _peak_tangent(C))
 
 
-def _minus_arctan(x: Array) -> Array:
+@register_jitable
+def _peak_tangent(C: Numbers) -> Numbers:
+    """Compute tan(pi/2C), the argument of the outer arctangent at the peak [-]."""
+    return np.tan(np.pi / (2 * C))
+
+
+@register_jitable
+def _curvature(Bx: Numbers, tangent: Numbers) -> Numbers:
+    """Compute `curvature_from_peak` from B x_m and tan(pi/2C) [-]."""
+    return (Bx - tangent) / _minus_arctan(Bx)
+
+
+@register_jitable
+def _minus_arctan(x: Numbers) -> Numbers:
     """Compute x - arctan(x), by its series where |x| < 0.01."""
     # The difference loses its digits at small x (and is zero below 1e-8, the loads of a leg about
     # to lift off), its series is exact to 3e-13 up to 0.01.
-    difference = x - np.arctan(x)
     small = np.abs(x) < 0.01
-    if not small.any():  # powers cost more than the arctangent
-        return difference
-    return np.where(small, x**3 * (1 / 3 - x**2 / 5 + x**4 / 7), difference)
+    near = small * x
+    square = near * near
+    series = near * square * (1 / 3 - square / 5 + square * square / 7)
+    return series + (1 - small) * (x - np.arctan(x))
+
+
+@register_jitable
+def _at_load(load: Numbers, constants: tuple[Numbers, ...]) -> tuple[Numbers, ...]:
+    """Compute B, C, mu and E at a load from `MagicFormula.constants` [-]."""
+    K, C, mu, shape, tangent, a_mu, a_K, reference, peak, sensitive = constants
+    if sensitive:
+        ratio = load / reference
+        mu = mu * ratio**a_mu
+        K = K * ratio**a_K
+    B = K / (C * mu)
+    E = _curvature(B * (shape * load), tangent) if peak else shape
+    return B, C, mu, E
 
 
 @dataclass(frozen=True)
-class MagicFormula:
+class MagicFormula(EquationLaw):
     """The Magic Formula as a slip law, with D = mu * Fn.
 
     Its parameters are those that data determine best: the slip stiffness K = B·C·mu (slope at zero
@@ -122,6 +145,8 @@ class MagicFormula:
     reference_load: float = 1.0
 
     name = "magic-formula"
+    at_load = staticmethod(_at_load)
+    traction_over_load = staticmethod(magic_formula)
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -147,29 +172,27 @@ class MagicFormula:
             B [-], C [-], D [N] and E [-], each broadcasting against `load` and the values.
         """
         Fn = np.asarray(load, dtype=float)
-        K, C, mu = (np.asarray(value, dtype=float) for value in values[:3])
-        if self.load_sensitivity:
-            ratio = Fn / self.reference_load
-            mu = mu * ratio ** np.asarray(values[-2])
-            K = K * ratio ** np.asarray(values[-1])
-        B = K / (C * mu)
-        if self.curvature == "peak":
-            E = curvature_from_peak(B, C, np.asarray(values[3]) * Fn)
-        elif self.curvature == "constant":
-            E = np.asarray(values[3], dtype=float)
-        else:
-            E = np.asarray(self.curvature, dtype=float)
+        B, C, mu, E = (np.asarray(each) for each in _at_load(Fn, self.constants(values)))
         return B, C, mu * Fn, E
 
-    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force, Eq. (4-23) [N]; see `SlipLaw.force`.
+    def constants(self, values: Values) -> tuple[Numbers, ...]:
+        """Compute what the coefficients take besides the load.
 
         Args:
-            slip: Slip ratio [-].
-            load: Normal force, positive [N].
             values: Parameter values, one entry a parameter.
+
+        Returns:
+            K, C, mu, x_m/Fn or E, tan(pi/2C), the exponents of mu and of K, the reference load [N],
+            and whether E is from the peak's position and whether mu and K vary with load.
         """
-        return magic_formula(slip, *self.coefficients(load, values))
+        K, C, mu = (np.asarray(value, dtype=float) for value in values[:3])
+        shape = values[3] if isinstance(self.curvature, str) else self.curvature
+        a_mu, a_K = values[-2:] if self.load_sensitivity else (0.0, 0.0)
+        return (
+            K, C, mu, np.asarray(shape, dtype=float), _peak_tangent(C),
+            np.asarray(a_mu), np.asarray(a_K), self.reference_load,
+            self.curvature == "peak", self.load_sensitivity,
+        )  # fmt: skip
 
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
         """Compute the derivative of the force with respect to slip ratio [N].
@@ -179,7 +202,7 @@ class MagicFormula:
             load: Normal force, positive [N].
             values: Parameter values, one entry a parameter.
         """
-        return magic_formula_slope(slip, *self.coefficients(load, values))
+        return magic_formula_slope(np.asarray(slip), *self.coefficients(load, values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
         """Return where E <= 1, so that the curve has one peak and keeps its sign.

@@ -1,40 +1,36 @@
 # SPDX-License-Identifier: MIT
 """Slip laws whose traction is the load times a function of slip alone."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable
 from typing import ClassVar
 
 import numpy as np
+from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
-from model.arrays import Array
-from model.slip.law import Values
+from model.arrays import Array, Numbers
+from model.slip.law import EquationLaw, Values
 
 
-class ProportionalLaw(ABC):
+@register_jitable
+def _at_any_load(_load: Numbers, constants: tuple[Numbers, ...]) -> tuple[Numbers, ...]:
+    """Return the coefficients of a law whose traction over load is the same at every load."""
+    return constants
+
+
+class ProportionalLaw(EquationLaw):
     """Methods of a `SlipLaw` whose traction over load does not depend on load.
 
-    A law adds its name and parameters, both attributes, and the methods `coefficients` and `peak`.
+    A law adds its name and parameters, both attributes, and the methods `constants`, which are the
+    arguments of `traction_over_load` after the slip, and `peak`.
 
     Attributes:
-        traction_over_load: Function from slip ratio and the law's coefficients to traction over
-            load [-].
         slope_over_load: Derivative of `traction_over_load` with respect to slip ratio [-].
     """
 
-    traction_over_load: ClassVar[Callable[..., Array]]
-    slope_over_load: ClassVar[Callable[..., Array]]
-
-    @abstractmethod
-    def coefficients(self, values: Values) -> tuple[Array, ...]:
-        """Compute the coefficients of `traction_over_load` from parameter values, in its order.
-
-        Each law overrides this method.
-
-        Args:
-            values: Parameter values, one entry a parameter.
-        """
+    at_load = staticmethod(_at_any_load)
+    slope_over_load: ClassVar[Callable[..., Numbers]]
 
     @abstractmethod
     def peak(self, values: Values) -> Array:
@@ -46,16 +42,6 @@ class ProportionalLaw(ABC):
             values: Parameter values, one entry a parameter.
         """
 
-    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force, load times `traction_over_load` [N].
-
-        Args:
-            slip: Slip ratio [-].
-            load: Normal force, positive [N].
-            values: Parameter values, one entry a parameter.
-        """
-        return np.asarray(load) * self.traction_over_load(slip, *self.coefficients(values))
-
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
         """Compute the derivative of the force with respect to slip ratio [N].
 
@@ -64,7 +50,8 @@ class ProportionalLaw(ABC):
             load: Normal force, positive [N].
             values: Parameter values, one entry a parameter.
         """
-        return np.asarray(load) * self.slope_over_load(slip, *self.coefficients(values))
+        slope = self.slope_over_load(np.asarray(slip, dtype=float), *self.constants(values))
+        return np.asarray(load) * slope
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
         """Return True everywhere, in the shape to which load and values broadcast.

@@ -2,13 +2,13 @@
 """A slip law whose braking side differs from its driving side in stiffness and friction."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from model.arrays import Array
-from model.slip.law import Parameter, SlipLaw, Values
+from model.slip.law import CompiledForce, Parameter, SlipLaw, Values
 
 N_SIDES = 2
 """Number of parameters that a `SidedLaw` has in addition to those of its middle curve."""
@@ -72,6 +72,16 @@ class SidedLaw:
         """
         m, h = side_factors(slip, *values[-N_SIDES:])
         return m * self.law.force(h * np.asarray(slip), load, values[:-N_SIDES])
+
+    def compiled_force(self, values: Values) -> CompiledForce:
+        """Return the force at one vector of parameter values, for compiled loops.
+
+        Args:
+            values: Parameter values, shape (k,).
+        """
+        m, h = (each.tolist() for each in side_factors(np.array([1.0, -1.0]), *values[-N_SIDES:]))
+        middle = self.law.compiled_force(values[:-N_SIDES])
+        return replace(middle, driving=(m[0], h[0]), braking=(m[1], h[1]))
 
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
         """Compute the derivative of the force by slip ratio; at zero slip the driving side's [N].

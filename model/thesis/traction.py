@@ -9,7 +9,7 @@ from model.arrays import Array
 from model.compiled import compiled
 from model.slip.definition import SlipDefinition, require_definition
 from model.slip.law import SlipLaw, Values
-from model.slip.magic_formula import MagicFormula
+from model.slip.magic_formula import MagicFormula, curvature_from_peak, magic_formula
 from model.slip.sided import middle_curve
 from model.walk.slip import Slip
 from model.walk.traction import TractionTable, VelocityCoulomb, law_table
@@ -101,15 +101,11 @@ def magic_force(traction, kappa, load):
         kappa: Slip ratio [-].
         load: Normal force [N].
     """
-    B, C = traction.B, traction.C
-    Bx = B * traction.peak_slip_per_load * load
-    gap = Bx - np.arctan(Bx) if Bx > 0.01 else Bx**3 * (1 / 3 - Bx**2 / 5 + Bx**4 / 7)
-    if gap == 0.0:  # loads below 1e-100 N
+    B, C, x_m = traction.B, traction.C, traction.peak_slip_per_load * load
+    if B * x_m < 1e-100:  # E would be infinite
         return 0.0
-    E = (Bx - np.tan(np.pi / (2 * C))) / gap
-    Bk = B * kappa
-    phi = Bk - E * (Bk - np.arctan(Bk))
-    return traction.friction * load * np.sin(C * np.arctan(phi))
+    E = curvature_from_peak(B, C, x_m)
+    return magic_formula(kappa, B, C, traction.friction * load, E)
 
 
 @compiled

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What every slip law owes, asked of every law and every set of its options."""
 
+from functools import cache
+
+import numba
 import numpy as np
 import pytest
 from hypothesis import given
@@ -155,6 +158,30 @@ def test_ensemble_of_values_equals_a_loop_over_walkers(law):
         together = np.broadcast_to(method(load, values), (5, 7))
         alone = [np.broadcast_to(method(load, one), 7) for one in walkers]
         np.testing.assert_allclose(together, alone)
+
+
+@cache
+def compiled(at_load, traction_over_load):
+    @numba.njit(error_model="numpy")
+    def force(slip, load, constants):
+        return load * traction_over_load(slip, *at_load(load, constants))
+
+    return force
+
+
+@pytest.mark.parametrize("law", LAWS_UNDER_TEST, ids=repr)
+def test_compiled_loops_compute_the_same_force(law):
+    rng = np.random.default_rng(1)
+    values = [rng.uniform(*interior(parameter)) for parameter in law.parameters]
+    slip = np.concatenate([np.zeros(1), rng.uniform(-0.5, 0.5, 300)])
+    slip[:100] *= 1e-4
+    slip[100:110] *= 1e3
+    load = rng.uniform(1e-3, 20.0, slip.shape)
+    load[:20] = 1e-9
+    made = law.compiled_force(values)
+    force = compiled(made.at_load, made.traction_over_load)
+    found = [force(*each, made.constants) for each in zip(slip, load, strict=True)]
+    np.testing.assert_allclose(found, law.force(slip, load, values), rtol=1e-11, atol=1e-12)
 
 
 @pytest.mark.parametrize("law", LAWS_UNDER_TEST, ids=repr)

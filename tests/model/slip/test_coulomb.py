@@ -32,7 +32,7 @@ def test_without_static_excess_traction_stays_at_friction(k, mu):
 
 
 def test_stiffer_regularisation_tends_to_the_sign_of_the_slip():
-    np.testing.assert_array_equal(regularised_sign([-0.1, 0.0, 0.1], 1e-9), [-1.0, 0.0, 1.0])
+    np.testing.assert_array_equal(regularised_sign(np.array([-0.1, 0.0, 0.1]), 1e-9), [-1, 0, 1])
 
 
 def test_stribeck_slip_is_where_all_but_one_over_e_of_the_excess_is_lost():

@@ -22,18 +22,16 @@ forces where the curve is steep would determine its slope, and bias it. Zeros, s
 noise are integrated out exactly by a Kalman filter of each run.
 """
 
+import math
 from dataclasses import dataclass, fields
 
 import numpy as np
-from scipy.linalg import solve_triangular, toeplitz
+from scipy.linalg import toeplitz
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
-from model.bayes.averaging.load_rule import load_rule
-from model.bayes.averaging.slip_rule import slip_rule
-from model.bayes.lane_likelihood import lane_log_likelihood
-from model.slip.definition import slip_per_radius_error
-from model.slip.lane_force import lane_law
+from model.bayes.block_forces import block_table, fill_forces
+from model.compiled import compiled
 from model.slip.law import Parameter, SlipLaw
 
 NUISANCE = (
@@ -61,6 +59,7 @@ NUISANCE = (
               "standard deviation of the force offset between runs"),
 )  # fmt: skip
 """The 11 parameters of the measurement, in their order behind the law's in parameter vectors."""
+LOG_2PI = math.log(2 * math.pi)
 
 
 @dataclass(frozen=True)
@@ -91,22 +90,7 @@ class PredictedForces:
 def predict_blocks(
     blocks: SlipBlocks, law: SlipLaw, values: Array, *, sine: bool = False
 ) -> PredictedForces:
-    r"""Compute expected traction, its slope in slip and the standard deviation of noise by block.
-
-    The mean of the law over a block is that over its loads, slip following load by regression, plus
-    what the spread of slip at one load adds to it, by the points of `slip_rule` for the variance of
-    the slip that does not follow the measured load; the sum is scaled to that which does not follow
-    the true one. The load's rule has two points and the mean, variance and skewness of the block's
-    loads: a bump on a disc makes the loads skewed, and because peak slip depends on load the force
-    is curved in load.
-
-    Crosstalk puts the expected traction into the load, by the slope of force in load. With the
-    measured traction there, the density of the traction would have a Jacobian, and an error in that
-    is multiplied by the number of blocks. The two differ by :math:`c\,f_n`, crosstalk times the
-    slope in load, a five-hundredth, of the noise. Where slip varies, crosstalk makes the measured
-    load fall as traction rises though the true load stays: slip follows the true load by
-    :math:`c\,f_\kappa\,\omega^2` over the variance of load more than it follows the measured one.
-    True loads below 1e-9 N count as 1e-9 N.
+    """Compute expected traction, its slopes and the standard deviation of noise of each block.
 
     Args:
         blocks: The block means, n of them.
@@ -114,39 +98,11 @@ def predict_blocks(
         values: Law and measurement parameters, shape (w, k + 11).
         sine: Whether slip within blocks near zero slip is distributed as a sine wave is.
     """
-    k = len(law.parameters)
-    law_values = values[:, :k].T[:, :, None]
-    g_t, g_n, b_n, c, epsilon, c_r = values[:, k : k + 6].T[:, :, None]
-    rule = load_rule(blocks)
-    shift = epsilon * slip_per_radius_error(blocks.slip, blocks.definition)
-
-    def force_at(slip: Array, load: Array) -> Array:
-        # A load cell bias can push the lightest loads through zero; no law is defined there.
-        true_load = np.maximum((1 + g_n) * load - b_n, 1e-9)
-        force = law.force(slip - shift, true_load, law_values)
-        return (1 + g_t) * (force - c_r * true_load)
-
-    variance = np.maximum(blocks.slip_variance(), 1e-12)
-    apart = np.maximum(variance - rule.slip_per_load**2 * rule.variance, 1e-12)
-    points = slip_rule(blocks.slip, apart, sine=sine)
-    away, weight = points.pairs()
-    offsets = np.concatenate([np.zeros((1, len(blocks))), away, -away])
-    # One call: what depends on load alone is computed once.
-    centre, *pairs = force_at(blocks.slip + offsets[:, None], blocks.normal_force)
-    above, below = np.split(np.array(pairs), 2)
-    slope = np.einsum("pn,pwn->wn", weight * away / points.sd**2, above - below)
-    bend = np.einsum("pn,pwn->wn", weight, above - 2 * centre + below)
-    per_load = rule.slip_per_load + c * slope * variance / rule.followed
-    at_one_load = np.maximum(variance - per_load**2 * rule.variance, 0.0) / apart
-    up, down = rule.heavy - blocks.normal_force, rule.light - blocks.normal_force
-    light = force_at(blocks.slip + per_load * down, rule.light)
-    heavy = force_at(blocks.slip + per_load * up, rule.heavy)
-    mean = light + rule.heavy_share * (heavy - light)
-    mean = mean + at_one_load * bend
-    slope_in_load = (force_at(blocks.slip, rule.heavy) - centre) / up
-    load_slope = slope_in_load / (1 + g_n)
-    noise = values[:, -3, None] * blocks.noise_size
-    return PredictedForces(mean + load_slope * c * mean, slope, load_slope, noise)
+    table, forces = block_table(blocks, sine=sine), np.empty((len(values), 3, len(blocks)))
+    for vector, of_vector in zip(values, forces, strict=True):
+        fill_forces(law, vector, table, of_vector)
+    force, slope, load_slope = forces.swapaxes(0, 1)
+    return PredictedForces(force, slope, load_slope, values[:, -3, None] * blocks.noise_size)
 
 
 def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
@@ -162,25 +118,73 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
     Returns:
         Log density of each run, shape (w, n_runs).
     """
-    k = len(law.parameters)
-    known = lane_law(law, values[:, :k])
-    if known is not None:
-        return lane_log_likelihood(blocks, known, values[:, k:])
-    predicted = predict_blocks(blocks, law, values)
+    table, forces = block_table(blocks), np.empty((3, len(blocks)))
+    runs = blocks.run_starts(), np.array(blocks.run_slip_error)
     found = np.empty((len(values), blocks.n_runs))
-    for index, vector in enumerate(values):
-        one = predicted.of_vector(index)
-        try:
-            factors = covariance_factors(blocks, one, vector)
-        except np.linalg.LinAlgError:  # numbers beyond what rounding leaves of them
-            found[index] = np.nan
-            continue
-        residual = np.split(blocks.traction_force - one.force, blocks.run_starts()[1:-1])
-        for run, (L, rest) in enumerate(zip(factors, residual, strict=True)):
-            white = solve_triangular(L, rest, lower=True)
-            size = np.log(2 * np.pi) * len(rest) + 2 * np.log(np.diag(L)).sum()
-            found[index, run] = -0.5 * (white @ white + size)
+    for vector, densities in zip(values, found, strict=True):
+        fill_forces(law, vector, table, forces)
+        _fill_densities(tuple(vector[-5:].tolist()), table, forces, *runs, densities)
     return found
+
+
+@compiled
+def _fill_densities(noise, table, forces, starts, run_slip_error, densities):
+    """Compute the log density of each run by a Kalman filter; see `run_log_likelihood`.
+
+    State of the filter: the standardised noise z, AR(1) with unit variance; observation noise: the
+    block's own errors of slip and load times the squared slopes. The filter is linear, so it
+    whitens the residual and the three directions that a run shares (1 for the zero of traction, the
+    slope for its slip error, the slope in load for the zero of load) together. Of their Gram matrix
+    the directions are eliminated one by one (Sherman-Morrison and the determinant lemma), each
+    with its variance: what is left of the residual is the quadratic form of the run's covariance.
+
+    Args:
+        noise: q, sigma_kappa, s_0, rho and tau.
+        table: What `block_table` returns of the blocks.
+        forces: Expected traction, slope in slip and in load, shape (3, n).
+        starts: Index of each run's first block, then the number of blocks, shape (n_runs + 1,).
+        run_slip_error: Variance of the error of slip that a run's blocks share, shape (n_runs,).
+        densities: Filled with the log densities, shape (n_runs,).
+    """
+    q, scatter, s_0, rho, tau = noise
+    gram, mean, error = np.empty((4, 4)), np.empty(4), np.empty(4)
+    for i in range(len(densities)):
+        for a in range(4):
+            mean[a] = 0.0
+            for b in range(4):
+                gram[a, b] = 0.0
+        variance, log_determinant = 1.0, 0.0
+        for j in range(starts[i], starts[i + 1]):
+            g, h = forces[1, j], forces[2, j]
+            s = s_0 * table.noise_size[j]
+            own = q * q * table.slip_error[j] + scatter * scatter
+            total = s * s * variance + g * g * own + h * h * table.load_error[j]
+            weight = 1.0 / total
+            gain = s * variance * weight
+            error[0], error[1] = table.traction[j] - forces[0, j], 1.0
+            error[2], error[3] = g, h
+            for a in range(4):
+                error[a] -= s * mean[a]
+                mean[a] = rho * (mean[a] + gain * error[a])
+            for a in range(4):
+                for b in range(4):
+                    gram[a, b] += weight * error[a] * error[b]
+            log_determinant += math.log(total)
+            variance = rho * rho * variance * (1.0 - gain * s) + (1.0 - rho * rho)
+        least = 1e-14 * gram[0, 0]
+        of_zero, shared = tau * tau, q * q * run_slip_error[i]
+        for k, prior in ((1, of_zero), (2, shared), (3, of_zero)):
+            pivot = 1.0 + prior * gram[k, k]  # by rounding negative where numbers are absurd: NaN
+            log_determinant += math.log(pivot)
+            for a in range(4):
+                error[a] = gram[a, k]
+            for a in range(4):
+                for b in range(4):
+                    gram[a, b] -= prior / pivot * error[a] * error[b]
+        # Where noise is far below everything else, what is left is rounding errors of either sign.
+        quadratic = least if gram[0, 0] < least else gram[0, 0]
+        size = (starts[i + 1] - starts[i]) * LOG_2PI
+        densities[i] = -0.5 * (quadratic + log_determinant + size)
 
 
 def slip_errors(blocks: SlipBlocks, values: Array) -> tuple[Array, Array]:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Two weighted loads that stand for all loads within a block."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,7 @@ LEAST_SPREAD = 0.001  # of the mean load, so that a slope in load is always defi
 LEAST_FOLLOWED = 0.005  # of the mean load: below it crosstalk and noise vary the load, not the rig
 
 
-@dataclass(frozen=True)
-class LoadRule:
+class LoadRule(NamedTuple):
     """Two weighted loads with the mean, variance and skewness of each block's; shape (n,) each.
 
     Attributes:

@@ -12,8 +12,7 @@ have five: at a leg's light load, whose curve rises and falls within two standar
 slip that wanders by 0.01, one pair is wrong by 12 % of the peak, two by 9 % and five by 1 %.
 """
 
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,8 +42,7 @@ WEIGHTS: Final = np.concatenate([_ONE[1], _GAUSS[1], _SINE[1]])
 """Weight of each point of these pairs."""
 
 
-@dataclass(frozen=True)
-class SlipRule:
+class SlipRule(NamedTuple):
     """The pairs of points of each block; shape (n,) each.
 
     Attributes:
@@ -56,16 +54,6 @@ class SlipRule:
     sd: Array
     first: NDArray[np.intp]
     last: NDArray[np.intp]
-
-    def pairs(self) -> tuple[Array, Array]:
-        """Return distances [-] and weights of `NEAR_PAIRS` pairs, shape (pairs, n) each.
-
-        Those that a block lacks have the distance of its last pair and no weight.
-        """
-        index = self.first + np.arange(NEAR_PAIRS)[:, None]
-        used = index < self.last
-        index = np.minimum(index, self.last - 1)
-        return POINTS[index] * self.sd, np.where(used, WEIGHTS[index], 0.0)
 
 
 def slip_rule(slip: Array, variance: Array, *, sine: bool = False) -> SlipRule:

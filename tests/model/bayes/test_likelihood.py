@@ -15,13 +15,28 @@ from model.bayes.likelihood import (
     predict_blocks,
     run_log_likelihood,
 )
-from model.slip import CoulombStribeck, MagicFormula, SlipDefinition
+from model.slip import Brush, CoulombStribeck, MagicFormula, SidedLaw, SlipDefinition
 from rig.slip_rig.imperfections import bump_rise
 
 LAW = MagicFormula(curvature=0.0)  # proportional to load exactly, as the covariance term assumes
 LAW_VALUES = (20.0, 1.5, 0.38)
 SLIP_SCALE = LAW_VALUES[2] / LAW_VALUES[0]  # where the initial slope would reach the peak
 SIZES = (1, 4, 9, 1, 6)
+LAWS = (
+    LAW,
+    MagicFormula(),
+    MagicFormula("constant", load_sensitivity=True, reference_load=6.0),
+    Brush(),
+    CoulombStribeck(),
+    CoulombStribeck(stribeck=False),
+    SidedLaw(Brush()),
+    SidedLaw(MagicFormula("peak", load_sensitivity=True, reference_load=6.0)),
+)
+TYPICAL = {
+    "slip_stiffness": 20.0, "shape": 1.5, "friction": 0.38, "peak_slip_per_load": 0.0066,
+    "curvature": -0.5, "friction_load_exponent": -0.1, "stiffness_load_exponent": 0.2,
+    "kinetic_ratio": 0.8, "stribeck_slip": 0.1, "side_stiffness": 0.3, "side_friction": -0.2,
+}  # fmt: skip
 
 
 def parameters(**nuisance):
@@ -89,6 +104,21 @@ def test_rounding_makes_no_density_of_a_misfit(stiffness, noise_floor):
     # A density is largest where nothing is left over; the noise floor bounds every variance below.
     sizes = np.array(SIZES)
     assert (density <= -sizes * (np.log(noise_floor) + 0.5 * np.log(2 * np.pi)) + 1e-9).all()
+
+
+@pytest.mark.parametrize("law", LAWS, ids=repr)
+def test_parameters_beyond_any_number_give_no_density_above_that_of_no_misfit(law):
+    rng, data = np.random.default_rng(2), blurred_blocks()
+    measurement = parameters(slip_scatter=0.002, offset_spread=0.1, crosstalk=0.02)[0]
+    middle = [*(TYPICAL[p.name] for p in law.parameters), *measurement[len(LAW_VALUES) :]]
+    values = middle * np.exp(rng.normal(0.0, 60.0, (400, len(middle))))
+    values[:, -2] = rng.uniform(-1.0, 1.0, len(values))
+    with np.errstate(all="ignore"):  # no variance is below that of what is new in the noise
+        found = log_likelihood(data, law, values)
+        new = data.noise_size * values[:, -3, None] * np.sqrt(1 - values[:, -2, None] ** 2)
+        highest = -np.log(new * np.sqrt(2 * np.pi)).sum(axis=1)
+    assert np.isfinite(found).any()
+    assert not (found > highest + 1e-9 * np.abs(highest)).any()
 
 
 def dense_covariances(data, predicted, *, rho, tau, scale=1.0, scatter=0.0):
@@ -251,10 +281,9 @@ def test_wander_and_both_slip_errors_blunt_the_curve_alike():
     np.testing.assert_allclose(forces[2], forces[0], rtol=1e-12)
 
 
-@pytest.mark.parametrize("law", [LAW, MagicFormula(), CoulombStribeck(stribeck=False)])
+@pytest.mark.parametrize("law", LAWS, ids=repr)
 def test_without_wander_a_block_is_the_law_itself_and_its_slope(law):
-    known = {"slip_stiffness": 20.0, "shape": 1.5, "friction": 0.38, "peak_slip_per_load": 0.0066}
-    law_values = [known[p.name] for p in law.parameters]
+    law_values = [TYPICAL[p.name] for p in law.parameters]
     values = np.array([[*law_values, *parameters()[0, len(LAW_VALUES) :]]])
     data = blocks()
     predicted = predict_blocks(data, law, values)
@@ -328,13 +357,27 @@ def test_noise_has_the_size_of_its_run_and_nothing_of_the_curve():
     np.testing.assert_allclose(predicted.noise[0], 0.1 * sizes)
 
 
-@pytest.mark.parametrize("crosstalk", [-0.02, 0.02])
-def test_slip_that_wanders_under_crosstalk_does_not_pass_for_slip_that_follows_load(crosstalk):
-    """Traction that wanders moves the measured load, though the true load stays at 5 N."""
+@pytest.mark.parametrize(
+    ("crosstalk", "wander", "follow", "error"),
+    [
+        (-0.02, 0.003, 0.0, 2e-4),
+        (0.02, 0.003, 0.0, 2e-4),
+        (-0.05, 0.008, 0.0, 0.03),
+        (0.05, 0.008, 0.0, 0.03),
+        (0.02, 0.006, 0.01, 0.06),
+    ],
+)
+def test_slip_follows_the_true_load_and_not_that_which_crosstalk_moves(
+    crosstalk, wander, follow, error
+):
+    """Traction that wanders moves the measured load, though the true load does not follow it."""
     rng = np.random.default_rng(9)
-    slip = np.array([-0.02, 0.01, 0.02])[:, None] + 0.003 * rng.standard_normal((3, 4000))
-    force = LAW.force(slip, 5.0, LAW_VALUES)
-    load = 5.0 - crosstalk * force
+    of_load = rng.standard_normal((3, 4000))
+    slip = np.array([-0.02, 0.01, 0.02])[:, None] + wander * rng.standard_normal((3, 4000))
+    slip += follow * of_load
+    true_load = 5.0 * (1 + 10 * follow * of_load)
+    force = LAW.force(slip, true_load, LAW_VALUES)
+    load = true_load - crosstalk * force
     deviation = slip - slip.mean(axis=1, keepdims=True)
     data = replace(
         blocks((3,)),
@@ -346,4 +389,4 @@ def test_slip_that_wanders_under_crosstalk_does_not_pass_for_slip_that_follows_l
         slip_load_covariance=np.mean(deviation * load, axis=1),
     )
     predicted = predict_blocks(data, LAW, parameters(crosstalk=crosstalk)).force[0]
-    np.testing.assert_allclose(predicted, force.mean(axis=1), rtol=5e-4)
+    np.testing.assert_allclose(predicted, force.mean(axis=1), rtol=0, atol=error)

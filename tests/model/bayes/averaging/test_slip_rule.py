@@ -4,23 +4,29 @@
 import numpy as np
 import pytest
 
-from model.bayes.averaging.slip_rule import FAR, slip_rule
+from model.bayes.averaging.slip_rule import FAR, NEAR_PAIRS, POINTS, WEIGHTS, slip_rule
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
 
 SD = 0.004
 
 
+def pairs(rule):
+    """Return distances and weights of pairs, shape (pairs, n); what a block lacks has no weight."""
+    index = rule.first + np.arange(NEAR_PAIRS)[:, None]
+    last = np.minimum(index, rule.last - 1)
+    return POINTS[last] * rule.sd, np.where(index < rule.last, WEIGHTS[last], 0.0)
+
+
 def mean_of(curve, slip, *, sd=SD, sine=False):
     """Average a curve over slip of a standard deviation by the rule."""
-    away, weight = slip_rule(slip, np.full(len(slip), sd**2), sine=sine).pairs()
+    away, weight = pairs(slip_rule(slip, np.full(len(slip), sd**2), sine=sine))
     return curve(slip) + np.sum(
         weight * (curve(slip + away) - 2 * curve(slip) + curve(slip - away)), axis=0
     )
 
 
 def slope_of(curve, slip):
-    rule = slip_rule(slip, np.full(len(slip), SD**2))
-    away, weight = rule.pairs()
+    away, weight = pairs(slip_rule(slip, np.full(len(slip), SD**2)))
     return np.sum(weight * away / SD**2 * (curve(slip + away) - curve(slip - away)), axis=0)
 
 

@@ -128,7 +128,7 @@ def find_run_out(
         posterior = _posterior(corrected, law, load_cell, rig_errors)
         starts = plain_starts(corrected, posterior, rng)[:2] if starts is None else starts
         curve = find_mode(posterior.log_density, starts)
-        starts = curve.mode[None]
+        starts = np.vstack([curve.mode, starts[-2:]])  # from the last mode alone a search may stall
         system = _system(corrected, posterior, curve, length)
         if system is None:
             return None

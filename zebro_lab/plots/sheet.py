@@ -288,7 +288,9 @@ TRACTION_LABEL = "traction force [N]"
 def slip_label(definition: str, width: float = np.inf) -> str:
     """Return the label of an axis of slip ratios, with the name of the slip definition.
 
-    Beside an axis of a width [inch] it is broken into two lines where it is longer.
+    Args:
+        definition: The slip definition.
+        width: Width of the axis; a longer label is broken into two lines [inch].
     """
     label = f"slip ratio, {definition} definition [-]"
     return label if _LETTER * len(label) < width else label.replace(", ", ",\n")

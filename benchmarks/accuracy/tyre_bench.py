@@ -29,7 +29,7 @@ from model.bayes.averaging.load_levels import load_levels, nearest_level
 from model.bayes.checks.groups import groups
 from model.bayes.checks.linear import linearise
 from model.bayes.cross_validation import r_squared
-from model.bayes.drawing.weighted import weighted_draws
+from model.bayes.drawing.importance import Effort, draws_at_modes
 from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell, validated
 from model.bayes.law_scores import choose_law, compare, load_groups, score_laws, weigh_law
 from model.bayes.likelihood import predict_blocks
@@ -176,7 +176,7 @@ def chosen(data: RigData, choice: BlockChoice) -> tuple[str, PreparedFit]:
 def judged(name: str, data: RigData, fit: PreparedFit) -> str:
     """Return a line of the table: R², chi-square of the groups, and the verdict's own check."""
     posterior, rng = fit.posterior, np.random.default_rng(3)
-    weighted = weighted_draws(posterior.log_density, fit.approximation, n=N_DRAWS, rng=rng)
+    weighted = draws_at_modes(fit.modes, posterior.log_density, effort=Effort(N_DRAWS), rng=rng)
     z = weighted.resample(RESAMPLED, rng=rng)
     blocks = posterior.blocks
     force = predict_blocks(blocks, posterior.law, posterior.values(z)).force.mean(axis=0)

@@ -5,10 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from model.bayes.drawing.laplace import LaplaceMixture
+from model.bayes.drawing.importance import Effort, draws_at_modes
+from model.bayes.drawing.laplace import Laplace, find_modes
 from model.bayes.drawing.shear import find_shear
-from model.bayes.drawing.tails import approximate
-from model.bayes.drawing.weighted import importance_draws
 from model.bayes.plain.fit import PlainFit, plain_fit
 from model.bayes.posterior import SlipPosterior
 from model.slip.samples import SlipSamples
@@ -66,13 +65,13 @@ def plain_starts(
 
 
 def straightened(
-    posterior: SlipPosterior, approximation: LaplaceMixture, rng: np.random.Generator
-) -> tuple[SlipPosterior, LaplaceMixture]:
+    posterior: SlipPosterior, modes: tuple[Laplace, ...], rng: np.random.Generator
+) -> tuple[SlipPosterior, tuple[Laplace, ...]]:
     """Shear the coordinates of a posterior with one mode that lies along a curved ridge.
 
     Args:
         posterior: The posterior.
-        approximation: Its Laplace approximations.
+        modes: Its Laplace approximations.
         rng: Source of randomness of the points that the shear is fitted to.
 
     Returns:
@@ -80,14 +79,15 @@ def straightened(
         as given where the posterior is straight or has several modes, or where fewer of
         `TRIED_DRAWS` draws are effective in straightened coordinates.
     """
-    mode, *others = approximation.modes
+    mode, *others = modes
     shear = None if others else find_shear(posterior.log_density, mode, rng)
     if shear is None:
-        return posterior, approximation
+        return posterior, modes
     sheared = replace(posterior, shear=shear)
-    mixture = approximate(sheared.log_density, mode.mode[None])
+    tops = find_modes(sheared.log_density, mode.mode[None])
+    once = Effort(TRIED_DRAWS, rounds=1)
     effective = [
-        importance_draws(each.log_density, proposal, n=TRIED_DRAWS, rng=rng).effective_size
-        for each, proposal in ((posterior, approximation), (sheared, mixture))
+        draws_at_modes(each_modes, each.log_density, effort=once, rng=rng).effective_size
+        for each, each_modes in ((posterior, modes), (sheared, tops))
     ]
-    return (sheared, mixture) if effective[1] > effective[0] else (posterior, approximation)
+    return (sheared, tops) if effective[1] > effective[0] else (posterior, modes)

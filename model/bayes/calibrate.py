@@ -10,9 +10,9 @@ import numpy as np
 
 from model.bayes.calibration import Calibration, conclude
 from model.bayes.drawing.convergence import Convergence, assess
-from model.bayes.drawing.jumps import choose_jumps
-from model.bayes.drawing.sampler import Chains, Jumps, advance, start_chains
-from model.bayes.drawing.weighted import weighted_draws
+from model.bayes.drawing.importance import Effort, draws_at_modes
+from model.bayes.drawing.mixture import StudentMixture
+from model.bayes.drawing.sampler import Chains, advance, start_chains
 from model.bayes.estimate import thin_draws
 from model.bayes.fit import (
     SHORT_CALLS,
@@ -41,12 +41,11 @@ from model.slip.rig_errors import USUAL, RigErrors
 from model.slip.samples import SlipSamples
 from model.tasks import Watcher
 
-THIN = 5  # sampler moves a kept step
 CHUNK = 20  # kept steps between checks for a request to stop
-FIRST_LOOK = 100  # kept steps before convergence is computed for the first time
-FEWEST_MOVES = THIN * FIRST_LOOK  # of a fit that has not converged, whatever `max_steps` says
+MOST_KEPT = 2000  # steps; of longer chains every second is kept, and of these again
+FIRST_LOOK = 100  # moves before convergence is computed for the first time
 DRAWS_PER_ENSEMBLE = 1000  # at most
-IMPORTANCE_DRAWS = 5_000
+IMPORTANCE_DRAWS = 5_000  # in a round
 EFFECTIVE_DRAWS = 2_000.0  # that are wanted of the weighted ones before sampling
 ALONE = 5_000.0  # where nothing is sampled: the tails need more than the middle
 
@@ -70,7 +69,7 @@ class SamplerSettings:
     Attributes:
         ensembles: Number of independent ensembles of walkers.
         max_steps: Number of sampler moves after which a fit ends without convergence, at the next
-            multiple of `THIN * CHUNK`; `FEWEST_MOVES` moves are made at least.
+            end of a chunk; `FIRST_LOOK` moves are made at least.
         block_length: Samples in a block; chosen by `choose_block_length` when None.
         threads: Number of ensembles sampled at once; below `SHORT_CALLS` blocks one at a time.
         seed: Seed of the random generators.
@@ -154,18 +153,15 @@ def calibrate(
     posterior, judging = fit.posterior, rng.spawn(1)[0]  # the same draws where a fit was resumed
     with explain_numerical_errors(samples, posterior.law):
         watcher.step("weighting", None)
-        weighted = weighted_draws(
-            posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS,
-            wanted=EFFECTIVE_DRAWS if settings.sampled else ALONE,
+        wanted = EFFECTIVE_DRAWS if settings.sampled else ALONE
+        weighted = draws_at_modes(
+            fit.modes, posterior.log_density, effort=Effort(IMPORTANCE_DRAWS, wanted),
             rng=judging, threads=_threads(fit, settings),
         )  # fmt: skip
         first(preview(posterior, weighted, rng=judging))
         chains = None
         if settings.sampled:
-            jumps = choose_jumps(
-                posterior.log_density, fit.approximation, weighted,
-                rng=judging.spawn(1)[0], threads=_threads(fit, settings),
-            )  # fmt: skip
+            jumps = weighted.mixture
             chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep, jumps)
             draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
         else:
@@ -282,7 +278,7 @@ def _sample(
     rng: np.random.Generator,
     watcher: Watcher,
     keep: Callable[[Chains], object],
-    jumps: Jumps,
+    jumps: StudentMixture,
 ) -> tuple[Chains, Convergence]:
     """Sample, from `earlier` if given, until convergence or the largest number of steps.
 
@@ -293,24 +289,24 @@ def _sample(
     density = fit.posterior.log_density
     if earlier is not None:
         _require_same_density(fit, earlier)
-    chains = earlier or start_chains(
-        density, fit.approximation, ensembles=settings.ensembles, thin=THIN, rng=rng
-    )
-    most = max(settings.max_steps // chains.thin, FIRST_LOOK)
+    chains = earlier or start_chains(density, jumps, ensembles=settings.ensembles, rng=rng)
+    most = max(settings.max_steps, FIRST_LOOK)
     threads = _threads(fit, settings)
-    look = next_look(chains.n_steps - CHUNK + 1)
+    look = next_look(chains.moves - CHUNK * chains.thin + 1)
     watcher.step("sampling", 0.0)
     while True:
-        if chains.n_steps >= min(look, most):
+        if chains.moves >= min(look, most):
             own = fit.posterior.own_coordinates(chains.z)
             convergence = assess(replace(chains, z=own))
-            if convergence.converged or chains.n_steps >= most:
+            if convergence.converged or chains.moves >= most:
                 return chains, convergence
-            fraction = max(convergence.fraction_done(), chains.n_steps / most)
+            fraction = max(convergence.fraction_done(), chains.moves / most)
             watcher.step("sampling", fraction)
-            look = next_look(chains.n_steps + 1)
+            look = next_look(chains.moves + 1)
         if watcher.stop_requested():
             raise FitStopped(chains)
+        if chains.n_steps > MOST_KEPT:
+            chains = chains.thinned()
         chains = advance(density, chains, steps=CHUNK, jumps=jumps, threads=threads)
         keep(chains)
 
@@ -331,19 +327,19 @@ def _threads(fit: PreparedFit, settings: SamplerSettings) -> int:
     return 1 if len(fit.posterior.blocks) < SHORT_CALLS else settings.threads
 
 
-def next_look(n_steps: int) -> int:
-    """Return the first step from `n_steps` on at which convergence is computed.
+def next_look(moves: int) -> int:
+    """Return the first number of moves, from `moves` on, at which convergence is computed.
 
-    These steps are 100 and, from each to the next, a fifth more, rounded down. They are fixed, so
-    that a fit that is stopped and resumed ends at the same step as a fit that is not.
+    These are `FIRST_LOOK` and, from each to the next, a fifth more, rounded down. They are fixed,
+    so that a fit that is stopped and resumed ends at the same move as a fit that is not.
 
     Args:
-        n_steps: Number of kept steps; the result is this number or larger.
+        moves: Number of sampler moves; the result is this number or larger.
 
     >>> [next_look(n) for n in (1, 101, 121)]
     [100, 120, 144]
     """
     look = FIRST_LOOK
-    while look < n_steps:
+    while look < moves:
         look = int(look * 1.2)
     return look

@@ -11,7 +11,7 @@ from model.bayes.checks.inspection import inspect
 from model.bayes.checks.linear import linearise
 from model.bayes.cross_validation import r_squared
 from model.bayes.drawing.convergence import Convergence
-from model.bayes.drawing.weighted import WeightedDraws
+from model.bayes.drawing.importance import WeightedDraws
 from model.bayes.estimate import (
     Agreement,
     Draws,

@@ -8,7 +8,7 @@ import numpy as np
 from model.arrays import Array
 from model.bayes.drawing.convergence import MAX_PARETO_K, Convergence
 from model.bayes.drawing.sampler import Chains
-from model.bayes.drawing.weighted import WeightedDraws
+from model.bayes.drawing.importance import WeightedDraws
 from model.bayes.posterior import SlipPosterior
 from model.slip.law import Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula

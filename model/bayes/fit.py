@@ -14,8 +14,7 @@ from model.bayes.averaging.run_noise import noise_sizes, with_true_loads
 from model.bayes.checks.raw import opposed_runs
 from model.bayes.cross_validation import CrossValidation, cross_validate
 from model.bayes.drawing.batches import in_batches
-from model.bayes.drawing.laplace import Laplace, LaplaceMixture
-from model.bayes.drawing.tails import approximate
+from model.bayes.drawing.laplace import Laplace, find_modes
 from model.bayes.plain.fit import PlainFit, plain_fit
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length
@@ -39,7 +38,7 @@ class PreparedFit:
 
     Attributes:
         posterior: Posterior density, with blocks, law and priors.
-        approximation: Laplace approximations at the modes, the highest first, and in heavy tails.
+        modes: Laplace approximations at the modes, the highest first.
         cross_validation: Prediction of left-out runs; None for one run or without validation.
         block_choice: The block length and the reason for it.
         load_cell: Prior knowledge of the load cell.
@@ -50,7 +49,7 @@ class PreparedFit:
     """
 
     posterior: SlipPosterior
-    approximation: LaplaceMixture
+    modes: tuple[Laplace, ...]
     cross_validation: CrossValidation | None
     block_choice: BlockChoice
     load_cell: LoadCell
@@ -62,7 +61,7 @@ class PreparedFit:
     @property
     def laplace(self) -> Laplace:
         """The Laplace approximation at the highest mode."""
-        return self.approximation.modes[0]
+        return self.modes[0]
 
 
 def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCell:
@@ -187,10 +186,9 @@ def _prepared(
     density = posterior.log_density
     if len(blocks) >= SHORT_CALLS:
         density = in_batches(density, threads)
-    approximation = approximate(density, starts)
-    posterior, approximation = straightened(posterior, approximation, rng)
+    posterior, modes = straightened(posterior, find_modes(density, starts), rng)
     fit = PreparedFit(
-        posterior, approximation, None, choice, load_cell, rig_errors, defaults, plain, stated
+        posterior, modes, None, choice, load_cell, rig_errors, defaults, plain, stated
     )
     return validated(fit, executor=executor) if validate else fit
 

@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.averaging.load_levels import load_levels, nearest_level
-from model.bayes.drawing.weighted import weighted_draws
+from model.bayes.drawing.importance import draws_at_modes
 from model.bayes.fit import CLEAR_WIN, PreparedFit
 from model.bayes.left_out import (
-    DRAWS,
-    ENOUGH,
+    EFFORT,
     ByWeights,
     LeftOut,
     Refit,
@@ -176,18 +175,18 @@ def weigh_law(name: str, fit: PreparedFit, *, rng: np.random.Generator) -> Weigh
     Raises:
         InsufficientData: There is one run.
     """
-    posterior, approximation = fit.posterior, fit.approximation
+    posterior = fit.posterior
     blocks, k = posterior.blocks, len(posterior.law.parameters)
     if blocks.n_runs < 2:
         raise InsufficientData(
             "laws are compared by runs that are left out, and these data are one run; expected two "
             "at least: name one law, or separate the data into runs ([runs] in columns.toml)"
         )
-    draws = weighted_draws(posterior.log_density, approximation, n=DRAWS, wanted=ENOUGH, rng=rng)
+    draws = draws_at_modes(fit.modes, posterior.log_density, effort=EFFORT, rng=rng)
 
     def predicted(group: NDArray[np.intp]) -> ByWeights:
         """Predict each group of runs, (n_runs,), without its data."""
-        return by_weights(posterior, draws, group, approximation=approximation, rng=rng)
+        return by_weights(posterior, draws, group, modes=fit.modes, rng=rng)
 
     group, loads = load_groups(blocks)
     return WeighedLaw(

@@ -12,14 +12,17 @@ from scipy.special import logsumexp
 from model.arrays import Array
 from model.bayes.cross_validation import MAX_SINGLE_FOLDS, N_GROUPED_FOLDS
 from model.bayes.drawing.convergence import MAX_PARETO_K
-from model.bayes.drawing.laplace import LaplaceMixture
-from model.bayes.drawing.tails import approximate
-from model.bayes.drawing.weighted import WeightedDraws, pareto_smoothed, weighted_draws
+from model.bayes.drawing.importance import (
+    Effort,
+    WeightedDraws,
+    draws_at_modes,
+    pareto_smoothed,
+)
+from model.bayes.drawing.laplace import Laplace, find_modes
 from model.bayes.posterior import SlipPosterior
 from model.tasks import compute_tasks
 
-DRAWS = 2_000  # of a posterior, at first
-ENOUGH = 200.0  # effective draws of the posterior without a group
+EFFORT = Effort(draws=2_000, wanted=200.0)  # of a posterior, also without a group
 _NEGLIGIBLE = 1e-12  # weight of a draw that is left out
 
 
@@ -109,7 +112,7 @@ def leave_out(
     draws: WeightedDraws,
     group: NDArray[np.intp],
     *,
-    approximation: LaplaceMixture,
+    modes: Sequence[Laplace],
     rng: np.random.Generator,
     executor: Executor | None = None,
 ) -> LeftOut:
@@ -119,14 +122,14 @@ def leave_out(
         posterior: The posterior of all runs.
         draws: Weighted draws of it.
         group: Group of each run, from 0, shape (n_runs,). At least two groups.
-        approximation: Its Laplace approximations; searches for modes start at theirs.
+        modes: Its Laplace approximations; searches for modes start at theirs.
         rng: Source of randomness of draws that are made anew.
         executor: Where fits without a group are computed; None for here.
 
     Raises:
         FitError: Without a group's runs all modes lie outside the posterior's support.
     """
-    weighed = by_weights(posterior, draws, group, approximation=approximation, rng=rng)
+    weighed = by_weights(posterior, draws, group, modes=modes, rng=rng)
     refits = weighed.refits
     found = compute_tasks(executor, refit_without, refits)
     return weighed.with_refits(list(found))
@@ -137,7 +140,7 @@ def by_weights(
     draws: WeightedDraws,
     group: NDArray[np.intp],
     *,
-    approximation: LaplaceMixture,
+    modes: Sequence[Laplace],
     rng: np.random.Generator,
 ) -> ByWeights:
     r"""Weight draws for each left-out group, and tell which groups need a fit without them.
@@ -156,7 +159,7 @@ def by_weights(
         posterior: The posterior of all runs.
         draws: Weighted draws of it.
         group: Group of each run, from 0, shape (n_runs,). At least two groups.
-        approximation: Its Laplace approximations; searches for modes start at theirs.
+        modes: Its Laplace approximations; searches for modes start at theirs.
         rng: Source of randomness, of which each refit has its own.
     """
     kept = draws.weights > _NEGLIGIBLE
@@ -170,7 +173,7 @@ def by_weights(
         smoothed, pareto_k[index] = pareto_smoothed(np.log(weights) - own.sum(axis=1))
         log_density[mine] = logsumexp(smoothed[:, None] + own, axis=0)
     refitted = ~(pareto_k < MAX_PARETO_K)
-    starts = np.stack([laplace.mode for laplace in approximation.modes])
+    starts = np.stack([laplace.mode for laplace in modes])
     folds = _folds(np.flatnonzero(refitted))
     refits = tuple(
         Refit(posterior, np.isin(group, fold), starts, own)
@@ -199,8 +202,8 @@ def refit_without(task: Refit) -> Refitted:
     """
     posterior, left_out = task.posterior, task.left_out
     without = posterior.without_runs(left_out)
-    approximation = approximate(without.log_density, task.starts)
-    draws = weighted_draws(without.log_density, approximation, n=DRAWS, wanted=ENOUGH, rng=task.rng)
+    modes = find_modes(without.log_density, task.starts)
+    draws = draws_at_modes(modes, without.log_density, effort=EFFORT, rng=task.rng)
     likely = draws.weights > _NEGLIGIBLE
     valid = likely & np.isfinite(posterior.log_prior(draws.z))
     used = valid if valid.any() else likely

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.bayes.drawing.convergence import MAX_PARETO_K, Convergence, assess_weighted
-from model.bayes.drawing.weighted import WeightedDraws
+from model.bayes.drawing.importance import WeightedDraws
 from model.bayes.estimate import Draws, Estimate, estimate
 from model.bayes.posterior import SlipPosterior
 
@@ -62,25 +62,25 @@ def weighted_posterior(
 ) -> tuple[Draws, Convergence]:
     """Make draws of equal weight in place of a sampler's, with their diagnostics.
 
-    The weighted draws are cut into equal parts, a remainder left out, and each part is resampled by
-    its weights on its own, so that the parts are as independent as ensembles of a sampler are.
+    The weighted draws are dealt to equal parts in turn, and each part is resampled by its weights
+    on its own, so that the parts are as independent as ensembles of a sampler are.
 
     Args:
         posterior: The posterior.
-        weighted: Weighted draws of it, in random order.
+        weighted: Weighted draws of it.
         parts: Number of parts, which stand for ensembles.
         n: Draws of each part.
         rng: Source of randomness.
     """
-    size = len(weighted.z) // parts
-    each = [weighted.part(slice(i * size, (i + 1) * size)) for i in range(parts)]
-    chosen = [part.resampled(n, rng=rng) for part in each]
-    z = np.stack([part.z[index] for part, index in zip(each, chosen, strict=True)])
-    density = np.stack([p.log_density[index] for p, index in zip(each, chosen, strict=True)])
-    flat = z.reshape(-1, z.shape[-1])
-    values = posterior.values(flat).reshape(parts, n, -1)
+    dealt = [np.arange(first, len(weighted.z), parts) for first in range(parts)]
+    shares = [weighted.weights[rows] for rows in dealt]
+    index = np.stack(
+        [rng.choice(rows, size=n, p=p / p.sum()) for rows, p in zip(dealt, shares, strict=True)]
+    )
+    z = weighted.z[index]
+    values = posterior.values(z.reshape(-1, z.shape[-1])).reshape(parts, n, -1)
     convergence = assess_weighted(
         posterior.own_coordinates(z), posterior.own_coordinates(weighted.z), weighted.weights,
         weighted.pareto_k,
     )  # fmt: skip
-    return Draws(z, values, density), convergence
+    return Draws(z, values, weighted.log_density[index]), convergence

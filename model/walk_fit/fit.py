@@ -4,7 +4,7 @@
 Two walks cannot identify six offsets unless most of them are small. The prior therefore states
 that every leg has a small offset, and that perhaps one leg has a large offset, wrongly mounted or
 knocked before one walk. Each of these cases has its mode (`model.walk_fit.modes`), around which
-draws are made and weighted (`model.bayes.drawing.adaptive`), with steering and stride integrated
+draws are made and weighted (`model.bayes.drawing.importance`), with steering and stride integrated
 out (`model.walk_fit.terms`). Paths alone often cannot identify the wrongly mounted leg; several
 cases then have similar weights.
 """
@@ -16,7 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.drawing.adaptive import Effort, WeightedCaseDraws, adaptive_draws
+from model.bayes.drawing.importance import (
+    Effort,
+    WeightedDraws,
+    importance_draws,
+    pareto_smoothed,
+)
+from model.bayes.drawing.mixture import start_mixture
 from model.errors import InsufficientData
 from model.robot import Robot
 from model.walk.traction import TractionTable
@@ -69,9 +75,14 @@ def fit_walks(
     search = ModeSearch(misfits, prior, executor)
     modes = search.modes(progress=lambda done: report(0.05 + 0.25 * done))
     density = _Density(misfits, prior, executor)
-    inner = [mode.within(WALKED) for mode in modes]
-    drawn = adaptive_draws(
-        inner, density, rng=rng, progress=lambda done: report(0.3 + 0.7 * done), effort=EFFORT
+    start = start_mixture(
+        np.stack([mode.z[WALKED] for mode in modes]),
+        np.stack([mode.covariance[np.ix_(WALKED, WALKED)] for mode in modes]),
+        np.array([mode.log_evidence for mode in modes]),
+        np.arange(len(modes)),
+    )
+    drawn = importance_draws(
+        start, density, effort=EFFORT, rng=rng, progress=lambda done: report(0.3 + 0.7 * done)
     )
     return WalkFit(density, drawn, tuple(walk.name for walk in walks), rng)
 
@@ -126,7 +137,7 @@ class WalkFit:
     def __init__(
         self,
         density: _Density,
-        drawn: WeightedCaseDraws,
+        drawn: WeightedDraws,
         names: tuple[str, ...],
         rng: np.random.Generator,
     ) -> None:
@@ -154,14 +165,12 @@ class WalkFit:
         """Compute the posterior of the walks with the indices `keep` by importance weights.
 
         The draws of the fit stay; their weights are the density given these walks alone over the
-        proposal density, with sum one.
+        proposal density, Pareto-smoothed, with sum one.
         """
         density, drawn = self._density, self._drawn
         terms = self._terms.only(keep)
         log_density = density.log_prior(drawn.z, drawn.case) + terms.log_likelihood()
-        log = log_density - drawn.log_proposal
-        weight = np.exp(log - log.max())
-        weight /= weight.sum()
+        weight = np.exp(pareto_smoothed(log_density - drawn.log_proposal)[0])
         values = self._values(drawn.z, *terms.conditional())
         likeliest = int(np.bincount(drawn.case, weight).argmax())
         densest = int(np.where(drawn.case == likeliest, log_density, -np.inf).argmax())

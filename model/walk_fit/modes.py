@@ -23,7 +23,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.arrays import Array
-from model.bayes.drawing.adaptive import Mode
 from model.robot import N_LEGS
 from model.walk_fit.misfit import WalkMisfit, walk_states
 from model.walk_fit.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
@@ -43,17 +42,23 @@ UNLIKELY = 8.0  # log evidence below the best at which a case is not optimised; 
 
 
 @dataclass(frozen=True)
-class CaseMode(Mode):
-    """The posterior in one case as a Gaussian.
+class CaseMode:
+    """The posterior in one case as a Gaussian, in standard normal coordinates.
 
     Attributes:
+        z: Mode or mean of the posterior in this case, shape (d,).
+        covariance: Covariance of the posterior in this case, shape (d, d).
+        log_evidence: Log of the case's prior probability times its evidence, up to a constant.
         case: The wrongly mounted leg; None for no leg.
     """
 
+    z: Array
+    covariance: Array
+    log_evidence: float
     case: Case
 
 
-def _evidence(mode: Mode) -> float:
+def _evidence(mode: CaseMode) -> float:
     """Return a mode's log evidence, as a key to sort by."""
     return mode.log_evidence
 

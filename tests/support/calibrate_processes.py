@@ -12,7 +12,7 @@ SMALLER_FIT = ("--law", "brush", "--threads", "1")
 PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}
 FILES = {"slip.toml", "summary.csv", "posterior.nc", "manifest.json"} | PICTURES
 EARLY = {"FIRST_LOOK": 40, "IMPORTANCE_DRAWS": 1000, "EFFECTIVE_DRAWS": 100.0}
-"""Constants of `model.bayes.calibrate` by which a fit ends after 40 kept steps, of few draws."""
+"""Constants of `model.bayes.calibrate` by which a fit ends after 40 moves, of few draws."""
 JUDGED_EARLY = (
     "import model.bayes.approximation as starts; starts.FEW_BLOCKS = 0; "
     "import model.bayes.calibrate as fits; "

@@ -12,8 +12,8 @@ from zebro_lab.calibration import stage
 from zebro_lab.calibration.priors import KnownPriors
 from zebro_lab.calibration.request import CalibrationRequest
 
-FEW = {"FIRST_LOOK": 10, "CHUNK": 5, "IMPORTANCE_DRAWS": 1000, "EFFECTIVE_DRAWS": 100.0}
-"""Constants of `model.bayes.calibrate`: steps before the first look, and at once, and draws."""
+FEW = {"FIRST_LOOK": 40, "CHUNK": 10, "IMPORTANCE_DRAWS": 1000, "EFFECTIVE_DRAWS": 100.0}
+"""Constants of `model.bayes.calibrate`: moves before the first look, steps at once, and draws."""
 
 
 NO_PRIOR_STARTS = ("model.bayes.approximation.FEW_BLOCKS", 0)

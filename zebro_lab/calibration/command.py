@@ -29,7 +29,7 @@ def fit_and_report(
         Exit: The fit was stopped (exit code 130); a line on stderr says so.
         ZebroLabError, ModelError: As in `zebro_lab.calibration.stage.calibrate`.
     """
-    from model.bayes.calibrate import FEWEST_MOVES
+    from model.bayes.calibrate import FIRST_LOOK
     from zebro_lab.calibration.screen import print_calibration, print_data, print_preview
     from zebro_lab.calibration.stage import Stopped, calibrate, read, stated_notes
 
@@ -38,10 +38,10 @@ def fit_and_report(
     print_data(output.console(), data)  # before the fit, which takes a minute
     for note in stated_notes(request, data):
         output.say(note)
-    if request.max_steps < FEWEST_MOVES:
+    if request.max_steps < FIRST_LOOK:
         output.say(
-            f"--max-steps {request.max_steps} is fewer than the {FEWEST_MOVES} sampler moves "
-            f"before a fit is first judged; {FEWEST_MOVES} are made"
+            f"--max-steps {request.max_steps} is fewer than the {FIRST_LOOK} sampler moves "
+            f"before a fit is first judged; {FIRST_LOOK} are made"
         )
     console = output.console()
     try:

@@ -91,7 +91,7 @@ class CalibrationRequest:
         int,
         Option(
             help="Largest number of sampler moves; a fit that has not converged ends then, but not "
-            "before its first look at 500 moves.",
+            "before its first look at 100 moves.",
         ),
         Range(least=1),
     ] = 30_000

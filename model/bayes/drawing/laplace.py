@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Laplace approximation: modes of a density, covariances there, and mixtures of the Gaussians."""
+"""Laplace approximation: modes of a density, and the covariances there."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.optimize import minimize
 
 from model.arrays import Array
-from model.bayes.drawing.student_mixture import StudentMixture
 from model.errors import FitError
 
 LogDensity = Callable[[Array], Array]
@@ -17,7 +15,6 @@ SAME_TOP = 0.05  # maxima closer than this in coordinates are the same mode
 NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, beyond which a mode is left out
 ITERATIONS = 15  # of a search for a mode in one scaling
 ROUNDS = 20  # scalings of a search
-FREEDOM = 8.0  # degrees of freedom of the Student-t distributions [-]
 STEP = 1e-4  # coordinates are of unit scale a priori; central differences err by about its square
 
 
@@ -49,52 +46,6 @@ class Laplace:
         return float(np.sqrt(away @ np.linalg.solve(self.covariance, away)))
 
 
-@dataclass(frozen=True)
-class LaplaceMixture:
-    """A mixture of Student-t distributions with 8 degrees of freedom, at modes and in tails.
-
-    Attributes:
-        modes: Laplace approximations in d coordinates, whose modes and covariances (as scale
-            matrices) are used.
-        tails: Gaussians in tails that reach farther than those at the modes, with the log density
-            at their centres.
-    """
-
-    modes: tuple[Laplace, ...]
-    tails: tuple[Laplace, ...] = ()
-
-    @property
-    def parts(self) -> tuple[Laplace, ...]:
-        """All Gaussians of the mixture, those at the modes first."""
-        return (*self.modes, *self.tails)
-
-    @cached_property
-    def weights(self) -> Array:
-        """Weights of the parts by evidence, at least about a tenth of an equal share, (parts,)."""
-        evidence = np.array([laplace.log_evidence() for laplace in self.parts])
-        share = np.exp(evidence - evidence.max())
-        share = np.maximum(share / share.sum(), 0.1 / len(share))
-        return share / share.sum()
-
-    @cached_property
-    def distribution(self) -> StudentMixture:
-        """The mixture without the densities at its centres."""
-        return StudentMixture(
-            self.weights,
-            np.stack([laplace.mode for laplace in self.parts]),
-            np.stack([laplace.covariance for laplace in self.parts]),
-            np.full(len(self.parts), FREEDOM),
-        )
-
-    def draw(self, n: int, *, rng: np.random.Generator) -> Array:
-        """Draw n coordinates from the mixture, in random order, shape (n, d)."""
-        return self.distribution.draw(n, rng=rng)
-
-    def log_pdf(self, z: Array) -> Array:
-        """Compute the mixture's log density at coordinates z of shape (w, d), shape (w,)."""
-        return self.distribution.log_pdf(z)
-
-
 def gradient(log_density: LogDensity, z: Array) -> Array:
     """Compute the gradient of a log density by central differences, in one batched call.
 
@@ -106,23 +57,6 @@ def gradient(log_density: LogDensity, z: Array) -> Array:
         Gradient, shape (d,); not finite where a step leaves the support.
     """
     return _value_and_gradient(log_density, z)[1]
-
-
-def gradients(log_density: LogDensity, points: Array) -> Array:
-    """Compute the gradients at several points by central differences, in one batched call.
-
-    Args:
-        log_density: Log density of points, shape (w, d) to (w,).
-        points: Coordinates of the points, shape (m, d).
-
-    Returns:
-        Gradients, shape (m, d); not finite where a step leaves the support.
-    """
-    m, d = points.shape
-    steps = STEP * np.concatenate([np.eye(d), -np.eye(d)])
-    both = log_density((points[:, None] + steps).reshape(-1, d)).reshape(m, 2, d)
-    with np.errstate(invalid="ignore"):  # infinities across the edge of the support
-        return (both[:, 0] - both[:, 1]) / (2 * STEP)
 
 
 def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array]:

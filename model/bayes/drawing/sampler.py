@@ -7,7 +7,7 @@ differences, so an ensemble is one chain. Several are run, each with its own see
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,8 +16,7 @@ from emcee.autocorr import integrated_time
 from emcee.moves import DEMove, MHMove
 
 from model.arrays import Array
-from model.bayes.drawing.laplace import LaplaceMixture
-from model.bayes.drawing.student_mixture import StudentMixture
+from model.bayes.drawing.mixture import StudentMixture
 from model.errors import DomainError, FitError
 
 MOVES = ((DEMove, 1.0),)
@@ -28,19 +27,7 @@ In 12 dimensions its autocorrelation time is a quarter of the stretch move's.
 The snooker move is not used: emcee's, up to 3.1.6, lacks half of the exponent of its acceptance
 ratio and narrows every spread by 7 %.
 """
-
-
-@dataclass(frozen=True)
-class Jumps:
-    """Moves that jump to draws of one fixed distribution, wherever the walker is.
-
-    Attributes:
-        proposal: The distribution, near the posterior.
-        share: Share of the moves that jump [-].
-    """
-
-    proposal: StudentMixture
-    share: float
+JUMPS = 0.8  # share of the moves that jump, where there is a distribution to jump to
 
 
 @dataclass(frozen=True)
@@ -68,6 +55,16 @@ class Chains:
         """Number of kept steps, the start included."""
         return self.z.shape[1]
 
+    @property
+    def moves(self) -> int:
+        """Number of sampler moves after the start."""
+        return (self.n_steps - 1) * self.thin
+
+    def thinned(self) -> "Chains":
+        """Return the chains with every second kept step; the start and, if even, the end stay."""
+        z, log_density = self.z[:, ::2], self.log_density[:, ::2]
+        return replace(self, z=z, log_density=log_density, thin=2 * self.thin)
+
 
 def walker_count(d: int) -> int:
     """Return the number of walkers for d dimensions: 3 d rounded up to even, at least 32."""
@@ -76,20 +73,20 @@ def walker_count(d: int) -> int:
 
 def start_chains(
     log_density: Callable[[Array], Array],
-    approximation: LaplaceMixture,
+    mixture: StudentMixture,
     *,
     ensembles: int,
-    thin: int,
     rng: np.random.Generator,
+    thin: int = 1,
 ) -> Chains:
-    """Draw every walker's start from the mixture at the posterior's modes, inside the support.
+    """Draw every walker's start from a mixture near the posterior, inside its support.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
-        approximation: The mixture of Student-t distributions at the posterior's modes.
+        mixture: The mixture.
         ensembles: Number of independent ensembles.
-        thin: Sampler moves for each kept step.
         rng: Source of randomness, of the starts and of each ensemble's seed.
+        thin: Sampler moves for each kept step.
 
     Returns:
         Chains of one step, the starts.
@@ -97,9 +94,9 @@ def start_chains(
     Raises:
         FitError: Fewer than one in eight draws lies inside the support.
     """
-    d = len(approximation.modes[0].mode)
+    d = mixture.centres.shape[1]
     walkers = walker_count(d)
-    drawn = approximation.draw(8 * ensembles * walkers, rng=rng)
+    drawn, _ = mixture.draw(8 * ensembles * walkers, rng=rng)
     heights = np.concatenate([log_density(part) for part in np.array_split(drawn, 8 * ensembles)])
     inside = np.flatnonzero(np.isfinite(heights))[: ensembles * walkers]
     if len(inside) < ensembles * walkers:
@@ -125,7 +122,7 @@ def advance(
     chains: Chains,
     *,
     steps: int,
-    jumps: Jumps | None = None,
+    jumps: StudentMixture | None = None,
     threads: int = 2,
 ) -> Chains:
     """Continue sampling every ensemble from its last kept step, the ensembles shared among threads.
@@ -138,8 +135,8 @@ def advance(
             in it.
         chains: Chains so far.
         steps: Number of kept steps to add, each of `chains.thin` moves.
-        jumps: Distribution that proposes some of the moves, so that walkers also jump between
-            modes, and their share; None for no such moves.
+        jumps: Distribution near the posterior that proposes the share `JUMPS` of the moves, so that
+            walkers also jump between modes; None for no such moves.
         threads: Number of ensembles that are sampled at once.
 
     Returns:
@@ -173,12 +170,12 @@ def advance(
     )
 
 
-def _moves(jumps: Jumps | None) -> list[tuple[Any, float]]:
+def _moves(jumps: StudentMixture | None) -> list[tuple[Any, float]]:
     """Return the moves of an ensemble with their shares; they have state, and serve one only."""
-    rest = 1.0 if jumps is None else 1 - jumps.share
+    rest = 1.0 if jumps is None else 1 - JUMPS
     moves: list[tuple[Any, float]] = [(move(), rest * share) for move, share in MOVES]
     if jumps is not None:
-        moves.append((MHMove(_jump_to(jumps.proposal)), jumps.share))
+        moves.append((MHMove(_jump_to(jumps)), JUMPS))
     return moves
 
 
@@ -217,7 +214,7 @@ def _jump_to(
     def propose(z: Array, rng: np.random.RandomState) -> tuple[Array, Array]:
         """Draw as many points as z (w, d) has; return them and the log Hastings factors (w,)."""
         # A generator of its own: RandomState hides half a pair of normals from its state array.
-        drawn = proposal.draw(len(z), rng=np.random.default_rng(rng.randint(2**31)))
+        drawn, _ = proposal.draw(len(z), rng=np.random.default_rng(rng.randint(2**31)))
         return drawn, proposal.log_pdf(z) - proposal.log_pdf(drawn)
 
     return propose

@@ -6,7 +6,7 @@ from typing import get_type_hints
 
 import pytest
 
-from model.bayes.calibrate import FEWEST_MOVES
+from model.bayes.calibrate import FIRST_LOOK
 from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.files.errors import SettingsError
 
@@ -19,7 +19,7 @@ def test_what_is_read_are_the_data_and_the_column_map():
 
 def test_the_help_states_the_fewest_moves_of_a_fit():
     option = get_type_hints(CalibrationRequest, include_extras=True)["max_steps"].__metadata__[0]
-    assert f"first look at {FEWEST_MOVES} moves" in option.help
+    assert f"first look at {FIRST_LOOK} moves" in option.help
 
 
 def test_the_earlier_calibration_is_read_and_its_options_need_it():

@@ -50,17 +50,14 @@ class Verdict:
         weak: Names of parameters that the data hardly tell.
         found: What is likely wrong with the data, the likeliest first; empty where nothing is.
         notes: What is told beside it, and spoils nothing.
+        converged: Whether the sampler converged.
     """
 
     checks: tuple[Check, ...]
     weak: tuple[str, ...] = ()
     found: tuple[Finding, ...] = ()
     notes: tuple[str, ...] = ()
-
-    @property
-    def converged(self) -> bool:
-        """Whether the sampler converged."""
-        return not any(c.failed and c.name == Question.SAMPLER for c in self.checks)
+    converged: bool = True
 
     @property
     def state(self) -> State:
@@ -107,7 +104,8 @@ class Verdict:
     def next_steps(self) -> tuple[Advice, ...]:
         """List what to do, without repetition: for what is likely wrong, else for each question."""
         if self.causes:
-            return tuple(dict.fromkeys(each.advice for each in self.found[:2]))
+            sampler = [a for c in self.checks if c.name == Question.SAMPLER for a in c.advice]
+            return tuple(dict.fromkeys([*sampler, *(each.advice for each in self.found[:2])]))
         asked = [check for check in self.checks if check.outcome is not Outcome.PASSED]
         failed = [check for check in asked if check.failed] or asked
         return tuple(dict.fromkeys(advice for check in failed for advice in check.advice))
@@ -166,7 +164,7 @@ def judge(
         questions.of_findings(Question.UNITS, of[Question.UNITS], "values lie within their priors"),
     )
     weak = weak_parameters(blocks, law, values, contraction)
-    return Verdict(checks, weak, likely(findings), tuple(notes))
+    return Verdict(checks, weak, likely(findings), tuple(notes), convergence.converged)
 
 
 def block_columns(fit: PreparedFit, samples: SlipSamples) -> dict[str, Array]:

@@ -14,6 +14,7 @@ import pandas as pd
 import pytest
 
 from model.arrays import Array
+from model.bayes.checks.causes import Cause
 from model.bayes.drawing.convergence import Convergence
 from model.bayes.drawing.weighted import weighted_draws
 from model.bayes.estimate import Agreement
@@ -107,7 +108,7 @@ def judged(data: Data, folder) -> tuple[State | None, str]:
         contraction=dict(zip((p.name for p in posterior.free), 1 - z.var(axis=0), strict=True)),
     )  # fmt: skip
     notes = [note for note in found.notes if note.startswith("IMPROBABLE")]
-    return verdict.state, " ".join([verdict.headline(), *notes, *verdict.notes])
+    return verdict.state, " ".join([verdict.headline(), *notes])
 
 
 def one_run(seed: int) -> Data:
@@ -156,17 +157,22 @@ def outlying(data: Data) -> Data:
 
 
 def late(data: Data) -> Data:
-    """Delay traction by a tenth of a second within each run."""
-    steps, force = round(0.1 * PLAN.rate), data.traction.copy()
-    for part in data.sweep.samples.slices():
-        force[part] = np.append(np.full(steps, force[part][0]), force[part])[: len(force[part])]
-    return data.with_(traction_force=force)
+    """Delay traction by a twentieth of a second in runs that sweep slip up and down."""
+    rng, t = np.random.default_rng(5), np.tile(np.arange(0.0, 12.0, 1 / PLAN.rate), 6)
+    run = np.repeat(np.arange(6), len(t) // 6)
+    slip, load = 0.2 * np.sin(t), np.where(run % 2, 4.0, 12.0)
+    force = THESIS_LAW.force(0.2 * np.sin(t - 0.05), load, THESIS_VALUES)
+    noise = 0.05 * rng.standard_normal(6)[run] + 0.03 * rng.standard_normal(len(t))
+    table = pd.DataFrame({"t": t + 20 * run, "run": run, "slip_ratio": slip, "normal_force": load})
+    return replace(
+        data, table=table.assign(traction_force=force + noise), columns=COLUMNS + SLIP_COLUMN
+    )
 
 
 def run_out(data: Data) -> Data:
-    """Run the leg disc 0.2 mm out of true: true slip swings with its angle."""
+    """Run the leg disc 0.6 mm out of true: true slip swings with its angle."""
     slip, load = data.sweep.slip_true, data.sweep.load_true
-    swing = (1 - slip) * 2e-4 / 0.035 * np.sin(12.0 * data.table.t.to_numpy())
+    swing = (1 - slip) * 6e-4 / 0.035 * np.sin(12.0 * data.table.t.to_numpy())
     change = THESIS_LAW.force(slip + swing, load, THESIS_VALUES)
     change = change - THESIS_LAW.force(slip, load, THESIS_VALUES)
     return data.with_(traction_force=data.traction + change)
@@ -176,6 +182,13 @@ def clipped_cell(data: Data) -> Data:
     """Stop the reading of traction at 0.6 of its largest."""
     limit = 0.6 * float(np.quantile(np.abs(data.traction), 0.999))
     return data.with_(traction_force=np.clip(data.traction, -limit, limit))
+
+
+def follows_column(data: Data) -> Data:
+    """Raise friction with a column that the map does not name."""
+    run = data.table.run.to_numpy()
+    room = np.random.default_rng(4).normal(20.0, 2.0, int(run.max()) + 1)[run]
+    return data.with_(traction_force=data.traction * (1 + 0.04 * (room - 20.0)), room=room)
 
 
 def scaled(factor):
@@ -191,20 +204,25 @@ def added(force):
 WRONG = {
     "sign": (scaled(lambda _: -1.0), "opposes"),
     "kN": (scaled(lambda _: 1e-3), "unit"),
-    "swapped speeds": (swapped_speeds, "exchange|swapped"),
-    "slip definition": (slip_definition, "definition"),
-    "drifted zero": (added(lambda data: 1.2 * drift(data)), "drift|zero of"),
-    "outliers": (outlying, "outliers"),
-    "two materials": (scaled(lambda data: np.where(data.of_share(0.5), 0.6, 1.0)), "material"),
-    "delay": (late, "late|delay"),
-    "run-out": (run_out, "run-out|turns"),
-    "clipped cell": (clipped_cell, "clipped"),
-    "wrong radius": (lambda data: replace(data, columns=COLUMNS.replace("35", "35.8")), "radi"),
-    "rolling resistance": (added(lambda data: -0.08 * data.table.normal_force), "rolling"),
-    "warming": (scaled(lambda data: 1 - 0.2 * drift(data)), "warming|change"),
-    "uneven gain": (scaled(lambda data: np.where(data.traction < 0, 0.76, 1.0)), "driving"),
-}
-"""Faults of rigs and tables, and words of which one names each."""
+    "swapped speeds": (swapped_speeds, "exchange"),
+    "slip definition": (slip_definition, Cause.DEFINITION),
+    "drifted zero": (added(lambda data: 1.2 * drift(data)), Cause.FORCE_ZERO),
+    "outliers": (outlying, Cause.OUTLIERS),
+    "two materials": (scaled(lambda data: np.where(data.of_share(0.5), 0.6, 1.0)), Cause.MATERIALS),
+    "delay": (late, Cause.TIMING),
+    "run-out": (run_out, Cause.RUN_OUT),
+    "clipped cell": (clipped_cell, Cause.SATURATION),
+    "wrong radius": (
+        lambda data: replace(data, columns=COLUMNS.replace("35", "35.8")), Cause.SLIP_ZERO,
+    ),
+    "rolling resistance": (added(lambda data: -0.08 * data.table.normal_force), Cause.FORCE_ZERO),
+    "warming": (scaled(lambda data: 1 - 0.2 * drift(data)), Cause.OVER_TIME),
+    "uneven gain": (
+        scaled(lambda data: np.where(data.traction < 0, 0.76, 1.0)), Cause.ONE_DIRECTION,
+    ),
+    "another floor": (follows_column, Cause.COLUMN),
+}  # fmt: skip
+"""Faults of rigs and tables, and words that name each."""
 
 
 @pytest.mark.parametrize("name", THIN)
@@ -219,7 +237,7 @@ def test_wrong_data_are_not_trusted_and_their_fault_is_named(name, tmp_path):
     make, words = WRONG[name]
     state, said = judged(make(sound(0)), tmp_path)
     assert state not in GOOD
-    assert any(word in said for word in words.split("|")), said
+    assert words in said, said
 
 
 @pytest.mark.parametrize("slips", [BOTH, DRIVING], ids=["two-sided", "one-sided"])

@@ -26,6 +26,10 @@ from model.slip.samples import SlipSamples
 
 PLAIN: Final = float("inf")
 """Gain of what is plain to see in single samples."""
+COMMON: Final = 0.005
+"""Share of outliers, from which they are plain to see; fewer hide no other cause [-]."""
+OF_FEW: Final = 20.0
+"""Gain of each of fewer outliers, whatever its size [-]."""
 HARMFUL: Final = 0.2
 """Amplitude over traction, from which a curve of means says little of an oscillating force [-]."""
 BROAD: Final = 1.0
@@ -101,7 +105,8 @@ def _outliers(
     )
     means = len(samples) <= 2 * samples.n_runs
     yield Finding(
-        Question.RAW, (Cause.OUTLIERS,), text, PLAIN, 0.0,
+        Question.RAW, (Cause.OUTLIERS,), text,
+        PLAIN if means or found.share >= COMMON else OF_FEW * found.count, 0.0,
         Effect(0.0, np.sqrt(found.share) * found.size / peak),
         ExcludeRuns(text, names) if means else CorrectData(
             text, "look at the raw log about them (cable, plug, noise), skip such rows with [rows] "

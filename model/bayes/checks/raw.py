@@ -25,6 +25,8 @@ OPPOSED = 0.9  # share of a run's samples
 STRETCH = 6  # equal successive samples that are looked at
 UNLIKELY = 4.0  # times as many such stretches as by chance
 PROMINENT = 30.0  # times the power of the frequencies beside
+LARGE, LARGE_PERIODS = 15.0, 3  # the same, and periods in a run, of a large swing
+LARGE_SWING = 0.2  # amplitude over traction of these
 LEAST_SWING = 0.01  # amplitude over traction
 FEWEST_SWINGING = 3  # runs
 FEWEST_PERIODS = 4  # in a run: slower noise is stronger, too
@@ -267,14 +269,16 @@ def _swing(
     force = detrended(residual[part])
     spectrum = np.abs(np.fft.rfft(force * window)) ** 2
     height = spectrum / _beside(spectrum)
-    height[:FEWEST_PERIODS] = 0
+    height[:LARGE_PERIODS] = 0
     top = int(np.argmax(height))
     span, level = (
         np.quantile(force, [0.025, 0.975]),
         float(np.mean(np.abs(samples.traction_force[part]))),
     )
     amplitude = 0.5 * float(span[1] - span[0])
-    if height[top] < PROMINENT or level == 0 or amplitude < LEAST_SWING * level:
+    large = amplitude >= LARGE_SWING * level
+    needed, first = (LARGE, LARGE_PERIODS) if large else (PROMINENT, FEWEST_PERIODS)
+    if height[top] < needed or top < first or level == 0 or amplitude < LEAST_SWING * level:
         return None
     fine = top + np.linspace(-1, 1, 41)
     waves = np.exp(-2j * np.pi * np.outer(fine, np.arange(n)) / n)

@@ -85,11 +85,6 @@ class ZeroBeforeEach(Advice):
 
 
 @dataclass(frozen=True)
-class WeighLoadCell(Advice):
-    """Advice to measure how stable the zero of the load cell is, and to state it."""
-
-
-@dataclass(frozen=True)
 class TryLaws(Advice):
     """Advice to fit the same data with the other laws.
 

@@ -16,7 +16,6 @@ from model.bayes.advice import (
     SamplePosterior,
     TryDefinition,
     TryLaws,
-    WeighLoadCell,
     ZeroBeforeEach,
 )
 
@@ -173,16 +172,6 @@ def _zero_before_each(advice: ZeroBeforeEach) -> str:
         lines,
         "then fit it alone (calibrate-slip FURTHER); if it says the same, forces drift too fast: "
         "let the load cell warm up, or mend it",
-    )
-
-
-@advice_text.register
-def _weigh_load_cell(advice: WeighLoadCell) -> str:
-    """Advise to measure the stability of the load cell's zero with known masses."""
-    return (
-        f"{advice.reason}: weigh the load cell (zebro-lab rig weigh --rig RIG --masses KG,KG "
-        "--data DATA), state its zero_stability there in columns.toml, and give the same command "
-        "again"
     )
 
 

@@ -44,11 +44,6 @@ class FastWander:
         """Share that blocks are made with: at most 1, and 0 unless above `SURE` times `sd` [-]."""
         return min(self.share, 1.0) if self.share > SURE * self.sd else 0.0
 
-    @property
-    def mixed(self) -> bool:
-        """Whether the share is above 0 and below 1, each by more than `SURE` times `sd`."""
-        return SURE * self.sd < self.share < 1 - SURE * self.sd
-
 
 def fast_wander(samples: SlipSamples, residual: Array, slope: Array) -> FastWander | None:
     """Estimate how much of the white part of measured slip the force follows.

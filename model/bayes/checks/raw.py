@@ -264,6 +264,7 @@ def _swing(
         return None
 
     def detrended(values: Array) -> Array:
+        """Subtract the quadratic trend over the run from values, shape (n,)."""
         return values - np.polyval(np.polyfit(trend, values, 2), trend)
 
     force = detrended(residual[part])

@@ -14,7 +14,6 @@ from model.bayes.advice import (
     MeasureSlips,
     SampleLonger,
     TryLaws,
-    WeighLoadCell,
     ZeroBeforeEach,
 )
 from model.bayes.checks.check import decided
@@ -93,7 +92,6 @@ def test_a_table_of_means_has_no_plan_and_no_run_folders():
     ("advice", "said"),
     [
         (SampleLonger("sample longer", 400), "command with --resume --max-steps 400"),
-        (WeighLoadCell("too close"), "zebro-lab rig weigh --rig RIG --masses KG,KG --data DATA"),
         (Advice("use F_max"), "use F_max"),
     ],
 )

@@ -61,7 +61,6 @@ def test_wander_is_used_only_beyond_chance():
     assert 0.3 < told(CASES["half and half"][0]).used < 0.7
     assert FastWander(1.2, 0.1).used == 1.0
     assert FastWander(0.25, 0.1).used == 0.0
-    assert [FastWander(x, 0.1).mixed for x in (0.0, 0.5, 0.9)] == [False, True, False]
 
 
 def test_slip_without_noise_has_nothing_to_tell():

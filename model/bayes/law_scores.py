@@ -30,6 +30,10 @@ from model.tasks import compute_tasks
 
 SMALL = 4.0
 """Difference of log density below which its standard error is no guide (Sivula et al. 2020)."""
+FEW_RUNS = 10
+"""Runs below which the scatter between them is no measure of a difference's error."""
+CLEAR_EVIDENCE = 10.0
+"""Log evidence by which a law must be better where runs are few; priors are known less well."""
 CURVES = 200  # draws of each law that are kept, for its curves
 
 
@@ -281,7 +285,10 @@ def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
     """Compare laws by the log predictive density of left-out runs, and choose one.
 
     Starting with the first, a later law replaces the chosen one if its density is larger by more
-    than `CLEAR_WIN` standard errors. Without cross-validation the first law is chosen.
+    than `CLEAR_WIN` standard errors. Fewer than `FEW_RUNS` runs do not tell that error: each may be
+    the only one at its load. There a larger density is enough where the evidence of all runs, by
+    Laplace's approximation, is larger by `CLEAR_EVIDENCE` too. Without cross-validation the first
+    law is chosen.
 
     Args:
         names: Name of each law, simplest first.
@@ -302,7 +309,9 @@ def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
     chosen = 0
     for index in range(1, len(fits)):
         gain = density[index] - density[chosen]
-        if gain.sum() > CLEAR_WIN * _error_of_sum(gain):
+        evidence = fits[index].laplace.log_evidence() - fits[chosen].laplace.log_evidence()
+        told = n_runs < FEW_RUNS and gain.sum() > 0 and evidence > CLEAR_EVIDENCE
+        if told or gain.sum() > CLEAR_WIN * _error_of_sum(gain):
             chosen = index
     excess = density - density[chosen]
     return LawComparison(

@@ -142,11 +142,13 @@ def judge(
     groups = group_residuals(linear)
     of_samples, notes = sample_findings(posterior, linear, samples, fit.plain)
     timed = samples.time is not None
+    terms, without = find(linear, suspects(linear, block_columns(fit, samples), timed=timed))
+    left = groups if without is linear else group_residuals(without)
     findings = [
         *of_samples,
-        *find(linear, suspects(linear, block_columns(fit, samples), timed=timed)),
+        *terms,
         *scatter_between_runs(linear, stability),
-        *questions.misfit(groups, blocks),
+        *questions.misfit(left, blocks),
     ]
     of = questions.by_question(findings)
     compared = compare_plain(posterior, linear, fit.plain, np.random.default_rng(0))

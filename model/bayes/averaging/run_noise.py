@@ -19,6 +19,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import polygamma
+from scipy.stats import kendalltau
 
 from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
@@ -31,6 +32,12 @@ FEWEST: Final = 3
 """Least number of blocks in a run that tell the size of its noise."""
 MEMORY: Final = 2.5
 """Scatter over sampling variance of runs that are alike: noise has a memory, and runs are few."""
+FEWEST_GROWING: Final = 10
+"""Least number of runs that tell whether noise grows with the force."""
+BY_CHANCE: Final = 0.01
+"""Probability by chance, below which it is said to."""
+MOST_GROWTH: Final = 2.0
+"""Largest power of the force with which a variance grows: noise in proportion to it."""
 
 
 def with_true_loads(blocks: SlipBlocks, residual: Array, slope: Array) -> SlipBlocks:
@@ -50,7 +57,8 @@ def with_true_loads(blocks: SlipBlocks, residual: Array, slope: Array) -> SlipBl
     e = residual - blocks.run_mean(residual)[blocks.run]
     size = np.bincount(blocks.run)
     # Shrunk: of a variance that is large by chance, too much would pass for the load's own.
-    variance = _shrunk(np.bincount(blocks.run, x**2) / np.maximum(size - 1, 1), size)
+    variance = np.bincount(blocks.run, x**2) / np.maximum(size - 1, 1)
+    variance = _shrunk(variance, size, blocks.run_mean(blocks.normal_force))
     told = np.bincount(blocks.run, slope**2) * (1 - 1 / size)
     followed = np.bincount(blocks.run, slope * x * e)
     weight = told / np.maximum(variance, 1e-300)  # noise counts where the load itself is steady
@@ -87,30 +95,55 @@ def noise_sizes(blocks: SlipBlocks, residual: Array, slip_slope: Array) -> Array
     rest = residual - blocks.run_mean(residual)[blocks.run]
     total = np.bincount(blocks.run, rest**2) / np.maximum(size - 1, 1)
     by_slip = np.bincount(blocks.run, slip_slope**2 * blocks.slip_error) / size
-    own = _shrunk(np.maximum(total - by_slip, 0.1 * total), size)
+    mean_square = blocks.run_mean(blocks.traction_force**2)
+    own = _shrunk(np.maximum(total - by_slip, 0.1 * total), size, np.sqrt(mean_square))
     enough = size >= FEWEST
     typical = float(np.median(own[enough])) if enough.any() else 0.0
     sizes = np.where(enough & (typical > 0), own / max(typical, 1e-300), 1.0)
     return np.sqrt(sizes)[blocks.run]
 
 
-def _shrunk(variance: Array, size: NDArray[np.intp]) -> Array:
-    """Shrink variances within runs towards that of the median run, (n_runs,) each.
+def _shrunk(variance: Array, size: NDArray[np.intp], force: Array) -> Array:
+    """Shrink variances within runs towards what runs at such a force usually have, (n_runs,) each.
 
-    Logarithms are shrunk by their sampling error, `MEMORY` times that of white noise, where runs of
-    at least `FEWEST` blocks scatter by more; variances of zero and of shorter runs stay.
+    That is a power of the force, as far as the data tell one, or the median run's. Logarithms are
+    shrunk by their sampling error, `MEMORY` times that of white noise, where runs of at least
+    `FEWEST` blocks scatter by more; variances of zero and of shorter runs stay.
 
     Args:
         variance: Variance within each run, shape (n_runs,).
         size: Number of its blocks, shape (n_runs,).
+        force: Typical size of a measured force in each run, shape (n_runs,) [N].
     """
     freedom = np.maximum(size - 1.0, 1.0)
     enough = (size >= FEWEST) & (variance > 0)
     if enough.sum() < 2:
         return variance
-    typical = median_variance(variance[enough], freedom[enough])
-    away = np.log(np.where(enough, variance, typical) / typical)
+    growth = _growth(variance[enough], force[enough]) * np.log(np.maximum(force, 1e-300))
+    level = np.where(enough, variance, 1.0) * np.exp(-growth)
+    typical = median_variance(level[enough], freedom[enough])
+    away = np.log(np.where(enough, level / typical, 1.0))
     scatter = (1.4826 * np.median(np.abs(away[enough]))) ** 2
     by_chance = MEMORY * polygamma(1, freedom / 2)
     share = np.maximum(0.0, 1.0 - by_chance / max(scatter, 1e-300))
-    return np.where(enough, typical * np.exp(share * away), variance)
+    return np.where(enough, typical * np.exp(share * away + growth), variance)
+
+
+def _growth(variance: Array, force: Array) -> float:
+    """Estimate the power of the force with which variances grow, 0 if that is not clear.
+
+    It is clear where Kendall's rank correlation is. The power is that of Tukey's resistant line,
+    through the medians of the outer thirds of the runs.
+
+    Args:
+        variance: Positive variance within each run, shape (n,).
+        force: Typical size of a measured force in it, shape (n,) [N].
+    """
+    if len(force) < FEWEST_GROWING or not force.min() > 0:
+        return 0.0
+    order, third = np.argsort(force), len(force) // 3
+    x, y = np.log(force[order]), np.log(variance[order])
+    wide, rise = (float(np.median(v[-third:]) - np.median(v[:third])) for v in (x, y))
+    if not wide > 0 or not kendalltau(x, y).pvalue < BY_CHANCE:
+        return 0.0
+    return float(np.clip(rise / wide, 0.0, MOST_GROWTH))

@@ -93,8 +93,18 @@ class Linearised:
     def project(self, terms: Array) -> Array:
         """Whiten terms, shape (n, m) [N], and take out what A absorbs, (n + d + 1, m) [-]."""
         white = whiten(self.blocks, terms, self.factors)
-        padded = np.vstack([white, np.zeros((self.basis.shape[1], terms.shape[1]))])
+        padded = np.vstack([white, np.zeros((len(self.rest) - len(white), terms.shape[1]))])
         return padded - self.basis @ (self.basis.T @ padded)
+
+    def without(self, terms: Array) -> "Linearised":
+        """Return the fit with terms, shape (n, m) [N], taken out of what it leaves.
+
+        Its `basis` has their columns too, and more than `triangle` has.
+        """
+        left, size, _ = np.linalg.svd(self.project(terms), full_matrices=False)
+        more = left[:, size > 1e-6 * max(float(size[0]), 1e-300)]
+        rest = self.rest - more @ (more.T @ self.rest)
+        return replace(self, basis=np.hstack([self.basis, more]), rest=rest)
 
     def absorbed(self, term: Array) -> Array:
         """Compute how far coordinates move to follow a term in the forces, to first order, (d,).

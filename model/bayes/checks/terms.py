@@ -49,20 +49,26 @@ class Suspect:
     """Number of terms of which it is the best."""
 
 
-def find(fit: Linearised, suspects: Iterator[Suspect]) -> list[Finding]:
-    """Estimate each suspect beside the fit.
+def find(fit: Linearised, suspects: Iterator[Suspect]) -> tuple[list[Finding], Linearised]:
+    """Estimate each suspect beside the fit; return what is found, and the fit without the best.
 
-    Probabilities are multiplied by the number of suspects that belong to the same question.
+    Probabilities are multiplied by the number of suspects that belong to the same question. The
+    real finding that explains most is taken out of the fit returned: what it explains of a misfit
+    of the curve is not the law's.
 
     Args:
         fit: The linearised fit.
         suspects: The suspects.
     """
     every = [each for each in suspects if np.isfinite(each.forces).all() and each.forces.any()]
-    return [
+    found = [
         _finding(fit, each, sum(other.question is each.question for other in every))
         for each in every
     ]
+    gain = [each.gain if each.real else 0.0 for each in found]
+    if not any(gain):
+        return found, fit
+    return found, fit.without(every[int(np.argmax(gain))].forces)
 
 
 def _finding(fit: Linearised, suspect: Suspect, tried: int) -> Finding:

@@ -80,3 +80,13 @@ def test_what_the_error_of_slip_does_is_no_noise_of_traction():
 
 def test_one_run_has_the_usual_noise():
     np.testing.assert_array_equal(noise_sizes(layout(1, 5), np.arange(5.0), np.zeros(5)), 1.0)
+
+
+def test_noise_that_grows_with_the_force_has_that_size_in_short_runs_too():
+    rng = np.random.default_rng(3)
+    blocks = layout(N_RUNS, 6)
+    force = np.geomspace(0.5, 5.0, N_RUNS)[rng.permutation(N_RUNS)][blocks.run]
+    blocks = replace(blocks, traction_force=force)
+    sizes = noise_sizes(blocks, 0.02 * force * rng.standard_normal(len(blocks)), np.zeros_like(force))
+    ratio = sizes / force
+    assert np.std(ratio) < 0.1 * np.mean(ratio)  # six blocks tell a size to 30 %

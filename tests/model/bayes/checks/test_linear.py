@@ -45,6 +45,14 @@ def test_forces_that_were_added_are_found_together_with_their_sizes(sizes):
     assert term.gain >= alone.gain > 100
 
 
+def test_terms_that_are_taken_out_are_not_found_again():
+    _, fit, _ = linearised(with_force(lambda s: 0.02 * s.normal_force))
+    terms = np.column_stack([np.ones(len(fit.blocks)), fit.blocks.normal_force])
+    assert fit.test(terms).gain > 100
+    left = fit.without(terms)
+    np.testing.assert_allclose(left.rest @ left.project(terms), 0.0, atol=1e-6)
+
+
 @pytest.mark.parametrize("m", [1, 2])
 def test_p_values_of_sound_data_are_uniform(m):
     _, fit, _ = linearised(length=100)

@@ -8,6 +8,7 @@ import pytest
 
 from model.bayes.advice import TryDefinition, ZeroBeforeEach
 from model.bayes.checks.causes import Cause, likely, named
+from model.bayes.checks.points import group_residuals
 from model.bayes.checks.terms import find, suspects
 from support.linearised_fits import linearised, only, scaled, swept, unchanged, with_force
 
@@ -16,7 +17,7 @@ def findings(change=unchanged, columns=None, *, timed=True, **more):
     """Look for all terms in changed samples, with columns of one value a run, by name."""
     _, fit, _ = linearised(change, **more)
     columns = {name: values[fit.blocks.run] for name, values in (columns or {}).items()}
-    return find(fit, suspects(fit, columns, timed=timed))
+    return find(fit, suspects(fit, columns, timed=timed))[0]
 
 
 def elapsed(samples):
@@ -129,3 +130,10 @@ def test_an_error_that_the_fit_estimates_counts_beyond_its_prior_and_moves_no_cu
     (zero,) = [each for each in found if each.causes[0] is Cause.SLIP_ZERO]
     assert (zero.p < 1e-3) == beyond
     assert not zero.effect.large
+
+
+def test_a_misfit_that_a_drift_explains_is_not_left_to_the_law():
+    _, fit, _ = linearised(with_force(lambda s: 0.8 * elapsed(s)))
+    _, without = find(fit, suspects(fit, {}, timed=True))
+    assert group_residuals(fit).p < 1e-3
+    assert group_residuals(without).p > 0.01

@@ -18,7 +18,7 @@ def test_the_sources_plan_is_foreseen():
     result = zebro_lab("plan", THESIS_PLAN)
     assert result.exit_code == 0, result.output
     assert "4 loads x 62 slip ratios" in result.output
-    assert "takes about 10 min" in result.output
+    assert "takes about 12 min" in result.output
     assert "limits of the plan, which all set-points keep" in result.output
 
 

@@ -87,6 +87,8 @@ def test_noise_that_grows_with_the_force_has_that_size_in_short_runs_too():
     blocks = layout(N_RUNS, 6)
     force = np.geomspace(0.5, 5.0, N_RUNS)[rng.permutation(N_RUNS)][blocks.run]
     blocks = replace(blocks, traction_force=force)
-    sizes = noise_sizes(blocks, 0.02 * force * rng.standard_normal(len(blocks)), np.zeros_like(force))
+    sizes = noise_sizes(
+        blocks, 0.02 * force * rng.standard_normal(len(blocks)), np.zeros_like(force)
+    )
     ratio = sizes / force
     assert np.std(ratio) < 0.1 * np.mean(ratio)  # six blocks tell a size to 30 %

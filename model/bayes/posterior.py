@@ -12,7 +12,7 @@ from model.arrays import Array
 from model.bayes.averaging.blocks import SlipBlocks
 from model.bayes.drawing.shear import Shear
 from model.bayes.likelihood import NUISANCE, run_log_likelihood
-from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, Uniform
+from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Prior, StudentT, Uniform
 from model.bayes.stated_priors import PriorCorrelation
 from model.slip.law import Parameter, SlipLaw
 from model.slip.rig_errors import USUAL, RigErrors
@@ -65,7 +65,7 @@ def default_priors(
         "bias_normal": Normal(0.0, load_cell.bias_sd),
         "crosstalk": Normal(0.0, load_cell.crosstalk_sd),
         "radius_error": Normal(0.0, rig_errors.radius_ratio),
-        "rolling_resistance": Normal(0.0, rig_errors.rolling_resistance),
+        "rolling_resistance": StudentT(0.0, rig_errors.rolling_resistance),
         "slip_error_scale": LogNormal(1.0, 0.5),
         "slip_scatter": HalfNormal(rig_errors.slip_scatter),
         "noise_floor": LogNormal(0.02 * force_scale, 1.5),

@@ -12,7 +12,16 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import erf, erfinv, log_ndtr, ndtr, ndtri, ndtri_exp
+from scipy.special import (
+    betainc,
+    betaincinv,
+    erf,
+    erfinv,
+    log_ndtr,
+    ndtr,
+    ndtri,
+    ndtri_exp,
+)
 
 from model.arrays import Array
 
@@ -62,6 +71,47 @@ class Normal:
     def describe(self) -> str:
         """Format the distribution's family and parameters as text."""
         return f"normal(mean {self.mean:g}, sd {self.sd:g})"
+
+
+@dataclass(frozen=True)
+class StudentT:
+    """Prior of Student's t: about as wide as a Gaussian in the middle, but data can leave it.
+
+    Attributes:
+        centre: Median, in the parameter's unit.
+        scale: Scale, in the parameter's unit.
+        freedom: Degrees of freedom [-].
+    """
+
+    centre: float
+    scale: float
+    freedom: float = 3.0
+
+    def value(self, z: ArrayLike) -> Array:
+        """Map standard normal coordinates z to values, the quantiles of Student's t at Phi(z)."""
+        # P(|t| < x) is a regularised incomplete beta function of x²/(nu + x²), and P(|t| > x) one
+        # of nu/(nu + x²); each keeps its digits where it is small.
+        z = np.asarray(z, dtype=float)
+        half, size = 0.5 * self.freedom, np.abs(z)
+        inner = betaincinv(0.5, half, erf(size / math.sqrt(2)))
+        outer = betaincinv(half, 0.5, 2 * ndtr(-size))
+        with np.errstate(divide="ignore"):  # of the one that is not used
+            square = np.where(size < 1, inner / (1 - inner), (1 - outer) / outer)
+        return self.centre + self.scale * np.sign(z) * np.sqrt(self.freedom * square)
+
+    def coordinate(self, value: ArrayLike) -> Array:
+        """Map values to standard normal coordinates z, the inverse of `value`."""
+        t = (np.asarray(value, dtype=float) - self.centre) / self.scale
+        half, square = 0.5 * self.freedom, t**2
+        inner = betainc(0.5, half, square / (self.freedom + square))
+        outer = betainc(half, 0.5, self.freedom / (self.freedom + square))
+        size = np.where(inner < 0.5, math.sqrt(2) * erfinv(inner), -ndtri(0.5 * outer))
+        return np.sign(t) * size
+
+    def describe(self) -> str:
+        """Format the distribution's family and parameters as text."""
+        shape = f"{self.freedom:g} degrees of freedom"
+        return f"Student's t(median {self.centre:g}, scale {self.scale:g}, {shape})"
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, Truncated, Uniform
+from model.bayes.priors import Below, HalfNormal, LogNormal, Normal, StudentT, Truncated, Uniform
 
 NAMED = (
     (Normal(0.3, 2.0), stats.norm(0.3, 2.0)),
+    (StudentT(0.01, 0.02), stats.t(3, 0.01, 0.02)),
     (LogNormal(10.0, 1.5), stats.lognorm(s=1.5, scale=10.0)),
     (HalfNormal(0.15), stats.halfnorm(scale=0.15)),
     (Uniform(-0.5, 0.99), stats.uniform(-0.5, 1.49)),
@@ -18,6 +19,7 @@ NAMED = (
 PRIORS = (*(prior for prior, _ in NAMED), Below(1.0, 1.0, 1.0), Below(1.0, 0.2, 0.5))
 SUPPORTS = {
     Normal: (-np.inf, np.inf),
+    StudentT: (-np.inf, np.inf),
     LogNormal: (0.0, np.inf),
     HalfNormal: (0.0, np.inf),
     Uniform: (-0.5, 0.99),
@@ -86,4 +88,6 @@ def test_arrays_map_entry_by_entry(prior):
 def test_a_description_names_the_family_and_its_numbers(prior):
     numbers = [f"{number:g}" for number in vars(prior).values()]
     assert all(number in prior.describe() for number in numbers)
-    assert prior.describe().startswith(("normal", "lognormal", "half-normal", "uniform", "1 - log"))
+    assert prior.describe().startswith(
+        ("normal", "lognormal", "half-normal", "uniform", "1 - log", "Student")
+    )

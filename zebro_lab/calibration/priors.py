@@ -270,7 +270,7 @@ def read_earlier(path: Path) -> EarlierCalibration:
     title = found.file.absolute().parent.name
     notes = []
     if found.doubt is not None:
-        notes.append(f"WARNING: the prior is a calibration that is not trustworthy: {found.doubt}")
+        notes.append(f"WARNING: the prior is a calibration that is {found.doubt}")
     if is_simulated(found.source):
         notes.append(f"the prior is a calibration of SIMULATED data, source '{found.source}'")
     return EarlierCalibration(

@@ -99,5 +99,5 @@ def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
     if read.caveat is not None:
         notes.append(f"slip: {read.caveat}")
     if read.doubt is not None:
-        doubts = (f"WARNING: the calibration is not trustworthy: {read.doubt}",)
+        doubts = (f"WARNING: the calibration is {read.doubt}",)
     return NamedSlip(read.curve, read.source, text, files, (*notes, *doubts), walks, doubts)

@@ -306,7 +306,8 @@ class ExperimentFolder:
     def _fail(self, error: BaseException) -> None:
         """Store the first failure as text, for the acquiring thread, which then stops the rig."""
         if self._failure is None:
-            self._failure = " ".join(f"{type(error).__name__}: {error}".split())
+            kind = "" if isinstance(error, SinkFailed) else f"{type(error).__name__}: "
+            self._failure = " ".join(f"{kind}{error}".split())
 
     def _work(self) -> None:
         """Carry out queued jobs until the end, also those behind a job that has failed."""

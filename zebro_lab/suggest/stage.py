@@ -253,7 +253,7 @@ def _notes(
             "the law is extrapolated"
         )
     if slip.doubt is not None:
-        notes.append(f"WARNING: the calibration is not trustworthy: {slip.doubt}")
+        notes.append(f"WARNING: the calibration is {slip.doubt}")
     return tuple(notes)
 
 

@@ -64,7 +64,7 @@ def test_untrustworthy_calibration_is_said_to_be(calibration):
     text = SLIP_TOML.format(headline="not trustworthy", trustworthy="false")
     (calibration / "slip.toml").write_text(text)
     (note,) = parse_slip(str(calibration)).notes
-    assert note == "WARNING: the calibration is not trustworthy: not trustworthy"
+    assert note == "WARNING: the calibration is not trustworthy"
     assert parse_slip(str(calibration)).doubts == (note,)
 
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Make the simulated rig sweep in this folder: `python datasets/rig-sim/generate.py`.
 
-Everything follows from `SEED`: the load cell's errors are drawn first, the sweep after.
+Everything follows from `SEED`: the load cell's errors are drawn first, the sweep after. The order
+of the slip ratios at each load is drawn apart from them.
 """
 
 import gzip
@@ -9,7 +10,7 @@ import hashlib
 import os
 import sys
 import tempfile
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,12 @@ sys.path.append(str(Path(__file__).parents[2] / "tests"))
 from support.simulated_sweep import SimulatedSweep, simulate_sweep
 
 SEED = 2020
-PLAN = SweepPlan()
+HALF = np.array(
+    [0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.065, 0.08, 0.1, 0.14, 0.2, 0.3, 0.5, 0.9]
+)
+SLIPS = np.tile(np.concatenate([-HALF[::-1], [0.0], HALF]), 2)  # both signs, each twice
+PLAN = SweepPlan(slips=tuple(np.random.default_rng([SEED, 1]).permutation(SLIPS).tolist()))
+LOAD_NOISE = {"load_noise_sd0": 0.05, "load_noise_sd1": 0.005}
 SOURCE = "sim:rig-sweep"
 
 TYPES = {  # float32 rounds at 1e-6 of what a sensor's noise already blurs; time has no noise
@@ -43,7 +49,7 @@ def simulate() -> tuple[SimulatedSweep, RigImperfections]:
         The sweep and the errors it was made with.
     """
     rng = np.random.default_rng(SEED)
-    imperfections = draw_imperfections(rng)
+    imperfections = replace(draw_imperfections(rng), **LOAD_NOISE)
     sweep = simulate_sweep(
         THESIS_LAW, THESIS_VALUES, plan=PLAN, imperfections=imperfections, rng=rng
     )

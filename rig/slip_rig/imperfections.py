@@ -33,6 +33,8 @@ class RigImperfections:
         noise_sd1: Growth s1 of that standard deviation with the traction [-].
         noise_correlation_time: Correlation time T of the noise, an AR(1) process with
             rho = exp(-dt/T); 0 is white [s].
+        load_noise_sd0: White noise of the normal channel without load, standard deviation [N].
+        load_noise_sd1: Growth of that standard deviation with the load [-].
         speed_noise: Standard deviation of each disc's white speed-sensor noise [rad/s].
         slip_wander_sd: Standard deviation of the true slip ratio about its set-point, which changes
             speeds and forces alike; none at slip 1, where the ground disc is held still [-].
@@ -64,6 +66,8 @@ class RigImperfections:
     noise_sd0: float = 0.0
     noise_sd1: float = 0.0
     noise_correlation_time: float = 0.0
+    load_noise_sd0: float = 0.0
+    load_noise_sd1: float = 0.0
     speed_noise: float = 0.0
     slip_wander_sd: float = 0.0
     slip_wander_time: float = 0.0

@@ -74,9 +74,9 @@ def simulate_sweep(
 
     .. math::
         F_t = (1 + g_t)\,[f(\kappa, F_n) - c_r F_n] + b_{run} + e, \qquad
-        F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
+        F_n = (1 + g_n)\,(F_{n,measured} - w) - b_n + c\,F_t
 
-    with F_t the measured traction, f the law at the true slip kappa and load F_n of `delay` before,
+    with white noise w, of a standard deviation that grows with the load, F_t the measured traction, f the law at the true slip kappa and load F_n of `delay` before,
     b_run ~
     N(0, tau²), and e an AR(1) process, stationary and independent in each run, whose marginal
     standard deviation is s0 + s1 times the size of the first term; g_t, g_n, b_n, c, c_r, tau, s0
@@ -108,6 +108,9 @@ def simulate_sweep(
     traction_force = force + offset[:, None] + _force_noise(force, plan, imperfections, rng)
     pressed = _late(load, plan, imperfections)
     normal_force = measured_load(pressed, traction_force, imperfections=imperfections)
+    size = imperfections.load_noise_sd0 + imperfections.load_noise_sd1 * pressed
+    if size.any():  # else the same state of the generator gives the speeds that it always gave
+        normal_force = normal_force + size * rng.standard_normal(size.shape)
     table: dict[str, Column] = {
         "t": np.arange(slip.size) / plan.rate,
         "omega_leg": plan.omega_leg + rng.normal(0.0, imperfections.speed_noise, slip.size),

@@ -10,14 +10,14 @@ import hashlib
 import os
 import sys
 import tempfile
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from model.slip.thesis_curve import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
+from rig.slip_rig.imperfections import RigImperfections, draw_imperfections, with_load_noise
 from rig.slip_rig.sweep import SweepPlan
 
 sys.path.append(str(Path(__file__).parents[2] / "tests"))
@@ -29,7 +29,6 @@ HALF = np.array(
 )
 SLIPS = np.tile(np.concatenate([-HALF[::-1], [0.0], HALF]), 2)  # both signs, each twice
 PLAN = SweepPlan(slips=tuple(np.random.default_rng([SEED, 1]).permutation(SLIPS).tolist()))
-LOAD_NOISE = {"load_noise_sd0": 0.05, "load_noise_sd1": 0.005}
 SOURCE = "sim:rig-sweep"
 
 TYPES = {  # float32 rounds at 1e-6 of what a sensor's noise already blurs; time has no noise
@@ -49,7 +48,7 @@ def simulate() -> tuple[SimulatedSweep, RigImperfections]:
         The sweep and the errors it was made with.
     """
     rng = np.random.default_rng(SEED)
-    imperfections = replace(draw_imperfections(rng), **LOAD_NOISE)
+    imperfections = with_load_noise(draw_imperfections(rng))
     sweep = simulate_sweep(
         THESIS_LAW, THESIS_VALUES, plan=PLAN, imperfections=imperfections, rng=rng
     )

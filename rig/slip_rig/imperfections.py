@@ -128,6 +128,11 @@ def draw_imperfections(rng: np.random.Generator) -> RigImperfections:
     )
 
 
+def with_load_noise(rig: RigImperfections) -> RigImperfections:
+    """Return the rig with the noise of a usual load cell: 0.05 N and 0.5 % of the load."""
+    return replace(rig, load_noise_sd0=0.05, load_noise_sd1=0.005)
+
+
 def measured_load(
     load_true: Array, traction_force: Array, *, imperfections: RigImperfections
 ) -> Array:

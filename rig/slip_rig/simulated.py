@@ -69,7 +69,7 @@ class RigTruth:
         omega_ground: True speed of the ground disc, shape (n,) [rad/s].
         slip: True material slip ratio, from -50 to 50; 0 while the leg disc stands, shape (n,) [-].
         load: True normal force, shape (n,) [N].
-        normal: Reading of the normal channel, shape (n,) [N].
+        normal: Reading of the normal channel without its white noise, shape (n,) [N].
         traction: Reading of the traction channel, shape (n,) [N].
     """
 
@@ -195,7 +195,10 @@ class SimulatedRig:
             ProtocolError: The rig has not run yet.
         """
         truth, at = self._states_at(times)
-        return truth.normal[at], truth.traction[at]
+        rig = self._imperfections
+        size = rig.load_noise_sd0 + rig.load_noise_sd1 * truth.load[at]
+        noise = size * self._rng.standard_normal(len(times)) if size.any() else 0.0
+        return truth.normal[at] + noise, truth.traction[at]
 
     def speeds(self) -> dict[str, tuple[float, float]]:
         """Return (angle [rad], noisy speed [rad/s]) of each disc, by `leg` and `ground`.

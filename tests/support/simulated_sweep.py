@@ -76,7 +76,8 @@ def simulate_sweep(
         F_t = (1 + g_t)\,[f(\kappa, F_n) - c_r F_n] + b_{run} + e, \qquad
         F_n = (1 + g_n)\,(F_{n,measured} - w) - b_n + c\,F_t
 
-    with white noise w, of a standard deviation that grows with the load, F_t the measured traction, f the law at the true slip kappa and load F_n of `delay` before,
+    with white noise w, whose standard deviation grows with the load, F_t the measured traction, f
+    the law at the true slip kappa and load F_n of `delay` before,
     b_run ~
     N(0, tau²), and e an AR(1) process, stationary and independent in each run, whose marginal
     standard deviation is s0 + s1 times the size of the first term; g_t, g_n, b_n, c, c_r, tau, s0

@@ -18,7 +18,7 @@ from rig.experiment.load import HandShaft, LoadSetter, SimulatedOperator
 from rig.experiment.plan import LoadSetting
 from rig.links.byte_link import MemoryLink
 from rig.openers import SIMULATED, resolve
-from rig.slip_rig.imperfections import draw_imperfections
+from rig.slip_rig.imperfections import draw_imperfections, with_load_noise
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
@@ -109,7 +109,7 @@ def opened_rig(
     rng = _run_rng(seed, run)
     rig = SimulatedRig(
         plan=SweepPlan(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground),
-        imperfections=draw_imperfections(np.random.default_rng([seed, 1])),
+        imperfections=with_load_noise(draw_imperfections(np.random.default_rng([seed, 1]))),
         dynamics=RigDynamics(ripple=0.005), rng=rng,
     )  # fmt: skip
     rig.command("leg", 0.0)  # it is commanded from the first: it sweeps nothing by itself

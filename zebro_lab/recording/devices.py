@@ -20,7 +20,7 @@ from rig.openers import IMU_PROFILE, LEGS_PROFILE, REPLAY, SIMULATED, imu_at, re
 from rig.profile import shipped_file
 from rig.safety import SampleGuard
 from rig.slip_rig.decode import decode_board, decode_forces
-from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.imperfections import TYPICAL_RIG, with_load_noise
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.sweep import SweepPlan
@@ -128,7 +128,10 @@ def default_gait() -> LegReference:
 def twin_rig(rng: np.random.Generator) -> SimulatedRig:
     """Return the simulated rig of recordings: typical imperfections, sweeping by `TWIN_SWEEP`."""
     return SimulatedRig(
-        plan=TWIN_SWEEP, imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
+        plan=TWIN_SWEEP,
+        imperfections=with_load_noise(TYPICAL_RIG),
+        dynamics=RigDynamics(ripple=0.005),
+        rng=rng,
     )
 
 

@@ -2,7 +2,7 @@
 """Make the simulated rig sweep in this folder: `python datasets/rig-sim/generate.py`.
 
 Everything follows from `SEED`: the load cell's errors are drawn first, the sweep after. The order
-of the slip ratios at each load is drawn apart from them.
+of the slip ratios, the same at each load, is drawn apart from them.
 """
 
 import gzip

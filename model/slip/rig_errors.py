@@ -9,7 +9,7 @@ RADIUS_TOLERANCE = 1e-4
 UNKNOWN_RATIO = 0.01
 """Standard deviation of the relative error of the ratio of two radii that are not known [-]."""
 ROLLING_RESISTANCE = 0.02
-"""Standard deviation of the rolling resistance of rubber on a disc, over the load [-]."""
+"""Scale of Student's t for the rolling resistance of rubber on a disc, over the load [-]."""
 RUN_OUT = 5e-5
 """Amplitude by which the radius of a disc at the contact varies once a turn [m]."""
 UNKNOWN_SCATTER = 0.002
@@ -18,11 +18,11 @@ UNKNOWN_SCATTER = 0.002
 
 @dataclass(frozen=True)
 class RigErrors:
-    """Prior standard deviations of errors of the rig, each about zero.
+    """Prior scales of errors of the rig, each about zero; standard deviations if not said.
 
     Attributes:
         radius_ratio: Of the relative error of the ratio of the discs' radii [-].
-        rolling_resistance: Of the resistance of rolling over the load [-].
+        rolling_resistance: Of the resistance of rolling over the load, that of Student's t [-].
         slip_scatter: Scale of the half-normal prior on the standard deviation of that part of a
             block's slip which the measured speeds do not show [-].
         run_out: Standard deviation of each coefficient of run-out of a disc whose angle is

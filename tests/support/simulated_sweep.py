@@ -31,7 +31,7 @@ Column: TypeAlias = Array | NDArray[np.int64]
 
 
 def draw_rig(rng: np.random.Generator, errors: RigErrors) -> RigImperfections:
-    """Draw the errors of a rig's load cell, and those of radii and rolling from their priors."""
+    """Draw errors of load cell, radii and rolling: Gaussians of the scales of the priors."""
     return replace(
         draw_imperfections(rng),
         radius_error=rng.normal(0.0, errors.radius_ratio),

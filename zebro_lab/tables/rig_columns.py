@@ -85,7 +85,7 @@ class RigErrorsStated:
         radius: Of each disc's radius [m].
         radius_ratio: Of the relative error of the ratio of the radii, instead of `radius` [-]; None
             if not given.
-        rolling_resistance: Of the rolling resistance over the load [-].
+        rolling_resistance: Of the rolling resistance over the load, the scale of Student's t [-].
         run_out: Amplitude by which each disc's radius at the contact varies once a turn, and the
             standard deviation of each coefficient of a disc whose angle is recorded [m].
     """

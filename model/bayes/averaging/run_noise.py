@@ -35,7 +35,7 @@ MEMORY: Final = 2.5
 FEWEST_GROWING: Final = 10
 """Least number of runs that tell whether noise grows with the force."""
 BY_CHANCE: Final = 0.01
-"""Probability by chance, below which it is said to."""
+"""P-value below which noise is said to grow with the force."""
 MOST_GROWTH: Final = 2.0
 """Largest power of the force with which a variance grows: noise in proportion to it."""
 
@@ -84,7 +84,8 @@ def noise_sizes(blocks: SlipBlocks, residual: Array, slip_slope: Array) -> Array
     """Estimate the size of each run's noise of traction over that of the usual run, (n,) [-].
 
     It is the scatter of the residual within the run, without what the error of slip makes of it,
-    shrunk towards the median run's. Runs of fewer than `FEWEST` blocks have the size 1.
+    shrunk towards what runs of such a traction have: a power of its root mean square, where that
+    is clear, or the median run's. Runs of fewer than `FEWEST` blocks have the size 1.
 
     Args:
         blocks: The block means, n of them.
@@ -106,20 +107,23 @@ def noise_sizes(blocks: SlipBlocks, residual: Array, slip_slope: Array) -> Array
 def _shrunk(variance: Array, size: NDArray[np.intp], force: Array) -> Array:
     """Shrink variances within runs towards what runs at such a force usually have, (n_runs,) each.
 
-    That is a power of the force, as far as the data tell one, or the median run's. Logarithms are
+    That is a power of the force, as far as the data tell one, but no less than at the middle of the
+    lightest third of the runs; or the median run's. Logarithms are
     shrunk by their sampling error, `MEMORY` times that of white noise, where runs of at least
     `FEWEST` blocks scatter by more; variances of zero and of shorter runs stay.
 
     Args:
         variance: Variance within each run, shape (n_runs,).
         size: Number of its blocks, shape (n_runs,).
-        force: Typical size of a measured force in each run, shape (n_runs,) [N].
+        force: Root mean square of a measured force in each run, shape (n_runs,) [N].
     """
     freedom = np.maximum(size - 1.0, 1.0)
     enough = (size >= FEWEST) & (variance > 0)
     if enough.sum() < 2:
         return variance
-    growth = _growth(variance[enough], force[enough]) * np.log(np.maximum(force, 1e-300))
+    # Noise that a cell has without force keeps that of the lightest runs from falling on.
+    lightest = max(float(np.quantile(force[enough], 1 / 6)), 1e-300)
+    growth = _growth(variance[enough], force[enough]) * np.log(np.maximum(force, lightest))
     level = np.where(enough, variance, 1.0) * np.exp(-growth)
     typical = median_variance(level[enough], freedom[enough])
     away = np.log(np.where(enough, level / typical, 1.0))

@@ -99,10 +99,13 @@ class Linearised:
     def without(self, terms: Array) -> "Linearised":
         """Return the fit with terms, shape (n, m) [N], taken out of what it leaves.
 
-        Its `basis` has their columns too, and more than `triangle` has.
+        Its `basis` has their columns too, but `triangle` has not: `absorbed` and `effect` are those
+        of the fit before. Directions that the fit absorbs stay, as in `test`.
         """
-        left, size, _ = np.linalg.svd(self.project(terms), full_matrices=False)
-        more = left[:, size > 1e-6 * max(float(size[0]), 1e-300)]
+        white = whiten(self.blocks, terms, self.factors)
+        scale = np.sqrt(np.maximum(np.sum(white**2, axis=0), 1e-300))
+        left, size, _ = np.linalg.svd(self.project(terms) / scale, full_matrices=False)
+        more = left[:, size > 1e-3]
         rest = self.rest - more @ (more.T @ self.rest)
         return replace(self, basis=np.hstack([self.basis, more]), rest=rest)
 

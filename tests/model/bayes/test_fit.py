@@ -6,7 +6,7 @@ import pytest
 
 from model.bayes.averaging.blocks import block_means
 from model.bayes.cross_validation import CrossValidation
-from model.bayes.drawing.laplace import find_mode
+from model.bayes.drawing.laplace import LaplaceMixture, find_mode
 from model.bayes.fit import CLEAR_WIN, prepare_fit, require_forces, scaled_load_cell
 from model.bayes.law_scores import compare
 from model.bayes.posterior import LoadCell, SlipPosterior
@@ -309,6 +309,21 @@ def test_a_lead_within_the_scatter_of_the_runs_is_no_win(fit):
     fits = with_densities(fit, density, density + unsure, density + sure)
     assert compare("ab", fits[:2]).chosen == 0
     assert compare("ac", fits[::2]).chosen == 1
+
+
+@pytest.mark.parametrize(
+    ("n_runs", "evidence", "chosen"), [(5, 11.0, 1), (5, 9.0, 0), (12, 11.0, 0)]
+)
+def test_of_few_runs_a_lead_counts_with_the_evidence_of_all(fit, n_runs, evidence, chosen):
+    few = replace(fit, posterior=fit.posterior.without_runs(np.arange(12) >= n_runs))
+    gain = np.resize([-2.0, 3.0], n_runs) + 0.1  # far within its scatter
+    plain, richer = with_densities(few, np.zeros(n_runs), gain)
+    mode = replace(fit.laplace, log_density=fit.laplace.log_density + evidence)
+    richer = replace(richer, approximation=LaplaceMixture((mode,)))
+    assert compare("ab", [plain, richer]).chosen == chosen
+    worse = with_densities(few, np.zeros(n_runs), -gain)[1]
+    worse = replace(worse, approximation=LaplaceMixture((mode,)))
+    assert compare("ab", [plain, worse]).chosen == 0
 
 
 def test_one_lucky_run_is_no_win(fit):

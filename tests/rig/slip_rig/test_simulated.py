@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rig.errors import ProtocolError
-from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.imperfections import TYPICAL_RIG, with_load_noise
 from rig.slip_rig.simulated import RigDynamics
 from rig.slip_rig.sweep import SweepPlan
 from support.board_twins import LAWS, PERFECT, world
@@ -53,6 +53,17 @@ def test_the_bump_raises_the_load_and_ripple_the_speed():
     assert truth.load.max() == pytest.approx(rig.load * 1.6, rel=1e-3)
     late = truth.omega_leg[-7000:]
     assert np.ptp(late) == pytest.approx(2 * 0.02 * 12.0, rel=0.05)
+
+
+def test_the_normal_channel_has_the_noise_of_a_load_cell():
+    plan = SweepPlan(loads=(8.0,))
+    rig = world(imperfections=with_load_noise(PERFECT), plan=plan, seed=1)
+    rig.command("leg", 0.0)
+    rig.advance(0.0)
+    rig.advance(1.0)
+    normal, traction = rig.forces(np.arange(0.1, 0.9, 1e-3))
+    assert np.std(normal) == pytest.approx(0.05 + 0.005 * 8.0, rel=0.1)
+    assert not traction.any()
 
 
 def test_a_standing_leg_disc_carries_no_force():

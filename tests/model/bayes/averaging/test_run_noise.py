@@ -91,4 +91,16 @@ def test_noise_that_grows_with_the_force_has_that_size_in_short_runs_too():
         blocks, 0.02 * force * rng.standard_normal(len(blocks)), np.zeros_like(force)
     )
     ratio = sizes / force
-    assert np.std(ratio) < 0.1 * np.mean(ratio)  # six blocks tell a size to 30 %
+    assert np.std(ratio[force > 1]) < 0.1 * np.mean(ratio)  # six blocks tell a size to 30 %
+
+
+def test_runs_without_traction_keep_the_noise_that_a_cell_has_without_force():
+    rng = np.random.default_rng(4)
+    blocks = layout(N_RUNS, 6)
+    force = np.geomspace(0.05, 5.0, N_RUNS)[rng.permutation(N_RUNS)][blocks.run]
+    force = np.where(blocks.run < 5, 0.0, force)
+    true = 0.03 + 0.02 * force
+    blocks = replace(blocks, traction_force=force)
+    sizes = noise_sizes(blocks, true * rng.standard_normal(len(blocks)), np.zeros_like(force))
+    ratio = (sizes / true)[blocks.run < 5] / np.median(sizes / true)
+    assert np.all((ratio > 0.5) & (ratio < 2.0))

@@ -50,7 +50,8 @@ def test_terms_that_are_taken_out_are_not_found_again():
     terms = np.column_stack([np.ones(len(fit.blocks)), fit.blocks.normal_force])
     assert fit.test(terms).gain > 100
     left = fit.without(terms)
-    np.testing.assert_allclose(left.rest @ left.project(terms), 0.0, atol=1e-6)
+    np.testing.assert_allclose(left.rest @ fit.project(terms), 0.0, atol=1e-6)
+    np.testing.assert_allclose(left.project(terms), 0.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("m", [1, 2])

@@ -154,12 +154,12 @@ def show(scored: list[Scored]) -> None:
     print_table(*rows)
 
 
-def test_turns_are_predicted_within_two_percent_root_mean_square(half_circles):
-    """The three walks that one fit predicts have the noise of its two tracks in common."""
+def test_turns_are_predicted_within_two_percent_but_one_of_fifteen(half_circles):
+    """The rig's E is constant, the law that is fitted has one that changes with load."""
     errors = [each.turn_error for each in half_circles]
-    turns = np.array([error for error, straight in errors if not straight])
-    assert np.sqrt(np.mean(turns**2)) < RADIUS
-    assert np.abs(turns).max() < 2 * RADIUS
+    turns = [abs(error) for error, straight in errors if not straight]
+    assert sum(error > RADIUS for error in turns) <= 1
+    assert max(turns) < 1.5 * RADIUS
     assert all(abs(error) < YAW_RATE for error, straight in errors if straight)
 
 

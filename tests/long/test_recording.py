@@ -107,15 +107,11 @@ def test_a_recorded_sweep_gives_the_law_that_the_simulated_rig_obeys(tmp_path):
     assert recorded.returncode == 0, recorded.stderr
     out = tmp_path / "calibration"
     fitted = subprocess.run(
-        [COMMAND, "calibrate", str(tmp_path / "data"), "--out", str(out), "--max-steps", "300"],
+        [COMMAND, "calibrate", str(tmp_path / "data"), "--out", str(out)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
-    # Slip glides through the rise within a second, in many short blocks: the sampler would take
-    # ten minutes to the end. The answer is tried; the sampler is elsewhere.
-    assert fitted.returncode in (0, 3), fitted.stderr
-    refused = [line.split("?")[0].split(maxsplit=1)[1] for line in fitted.stdout.splitlines()
-               if "? NO:" in line]  # fmt: skip
-    assert set(refused) <= {"Did the sampler converge"}
+    assert fitted.returncode == 0, fitted.stderr
+    assert "verdict: not trustworthy" not in fitted.stdout
     found = pd.read_csv(out / "summary.csv").set_index("parameter")
     true = dict(zip((p.name for p in THESIS_LAW.parameters), THESIS_VALUES, strict=True))
     for name, value in true.items():
